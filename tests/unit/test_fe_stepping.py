@@ -15,10 +15,12 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
+from anisocontact.solver.stepping.attempts import _reason
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.system.culprit import Culprit
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
@@ -193,6 +195,23 @@ def test_alternating_points_are_found():
     assert not watch.unsettled()
     watch.clear()
     assert not watch.alternating()[0].any()
+
+
+def test_points_at_the_border_of_the_master_are_named():
+    """Requirement: a point that leaves its master and comes back is told from one that flips."""
+    trial = SimpleNamespace(status=np.zeros(2, dtype=np.int8))
+    contact = SimpleNamespace(trial=trial, projected_facets=lambda: np.zeros(2, dtype=np.int64))
+    watch = StatusWatch([contact])
+    assert not watch.on_border(0).any()
+    for i in range(6):
+        contact.trial.status[:] = i % 2
+        watch.note(1.0, [np.array([True, i % 2 == 1])])
+    assert watch.alternating()[0].all()
+    assert watch.on_border(0).tolist() == [False, True]
+    found = [Culprit("flipping", (0.0, 0.0, 0.0), "", border=bool(b)) for b in watch.on_border(0)]
+    told = _reason("no convergence", found)
+    assert "2 slave points alternates (chattering), 1 of them at the border" in told
+    assert "border" not in _reason("no convergence", found[:1])
 
 
 def sticky(interface, most=10.0, width=1e-5):

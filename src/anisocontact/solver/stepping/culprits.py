@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -75,7 +76,11 @@ def _alternating(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
             seen = watch.history(i)[:, point]
             names = " and ".join(STATUS[code] for code in np.unique(seen))
             why = f"the status alternates between {names}"
-            yield _slave_point(problem, watch, i, int(point), "flipping", why)
+            found = _slave_point(problem, watch, i, int(point), "flipping", why)
+            if watch.on_border(i)[point]:
+                why = f"{why}, over the border of the master and back"
+                found = replace(found, why=why, border=True)
+            yield found
 
 
 def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:

@@ -336,7 +336,8 @@ class Solver:
         raise stop
 
     def _report(self, iteration: int, residual: float) -> None:
-        self._watch.note(residual)
+        contacts = self.problem.contacts
+        self._watch.note(residual, [c.master.located(c.trial.state) for c in contacts])
         if not self.problem.stabilisation.flow.flows:  # bodies that flow go far in an attempt
             self._watch.hold()
         if self._on_iteration is not None:

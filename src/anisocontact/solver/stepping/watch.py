@@ -27,21 +27,24 @@ class StatusWatch:
         self._contacts = list(contacts)
         self._statuses: deque[list[Ints]] = deque(maxlen=MEMORY)
         self._feet: deque[list[Ints]] = deque(maxlen=MEMORY)
+        self._above: deque[list[Ints]] = deque(maxlen=MEMORY)
         self._residuals: deque[float] = deque(maxlen=MEMORY)
 
     def clear(self) -> None:
         """Forget everything: another attempt begins."""
-        for memory in (self._statuses, self._feet, self._residuals):
+        for memory in (self._statuses, self._feet, self._above, self._residuals):
             memory.clear()
 
-    def note(self, residual: float) -> None:
+    def note(self, residual: float, above: Sequence[Flags] = ()) -> None:
         """Take status and feet of the last evaluation.
 
         Args:
             residual: Its residual, over the forces at work.
+            above: Which points of each contact have their master below them, if that is known.
         """
         self._statuses.append([c.trial.status.astype(np.int64) for c in self._contacts])
         self._feet.append([contact.projected_facets() for contact in self._contacts])
+        self._above.append([one.astype(np.int64) for one in above])
         self._residuals.append(residual)
 
     def hold(self) -> None:
@@ -62,6 +65,13 @@ class StatusWatch:
     def feet(self, contact: int) -> Ints:
         """What they had below them, see `projected_facets`, (iterations, points)."""
         return self._of(self._feet, contact)
+
+    def on_border(self, contact: int) -> Flags:
+        """Points of a contact that were above the master and beside it, (points,)."""
+        if not all(self._above):
+            return np.zeros(len(self._contacts[contact].trial.status), dtype=bool)
+        above = self._of(self._above, contact)
+        return np.asarray(above.any(axis=0) & ~above.all(axis=0))
 
     def alternating(self) -> list[Flags]:
         """Points of each contact that changed their status again and again."""

@@ -20,6 +20,7 @@ class Culprit:
         point: Number of the slave point in its contact, from 0; -1 for cells and nodes.
         facet: Number of its facet in the facet group, from 0; -1 for cells and nodes.
         statuses: Status of a slave point in the last Newton iterations, the latest at the end.
+        border: Whether a slave point went over the border of the master and came back in these.
 
     Example:
         >>> node = Culprit("residual", (0.0, 0.5, 1.0), "the largest residual, 1e-3")
@@ -34,6 +35,7 @@ class Culprit:
     point: int = -1
     facet: int = -1
     statuses: tuple[str, ...] = ()
+    border: bool = False
 
     def __str__(self) -> str:
         """One line."""
