@@ -14,6 +14,7 @@ from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
+from anisocontact.solver.strategies.condensed.once import once
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem
@@ -54,7 +55,7 @@ class LaggedFactor:
     def __init__(
         self, problem: Problem, note: Callable[[str], None], kept: Arrays | None = None
     ) -> None:
-        self._problem, self._note = problem, note
+        self._problem, self._note = problem, once(note)
         self._factor: BorderedLU | None = None
         self._touched: Touched | None = None
         self._of_factor = scipy.sparse.csr_array((0, 0))
