@@ -16,6 +16,7 @@ from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
 from anisocontact.solver.strategies.condensed.once import once
 from anisocontact.solver.strategies.condensed.touched import Touched
+from anisocontact.solver.strategies.condensed.trust import Trust
 from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -39,8 +40,9 @@ class LaggedFactor:
     changes at once is in it, and what it lacks is the change of the bodies since. Where volume is
     kept apart it is the mixed form that is preconditioned, see `MixedForm`.
 
-    A factor is made anew where it is worn, see `Wear`. Where a new one in double precision does not
-    lead to the correction either, all unknowns are factorised for this correction alone.
+    A factor is made anew where it is worn, see `Wear`, and where old ones lead nowhere, see
+    `Trust`. All unknowns are factorised for a correction alone where a new factor in double
+    precision does not lead to it either, and in the place of new factors that cost more.
 
     Args:
         problem: The problem, on one process.
@@ -61,7 +63,9 @@ class LaggedFactor:
         self._of_factor = scipy.sparse.csr_array((0, 0))
         self._slope = scipy.sparse.csr_array((0, 0))
         self._single, self._due = True, True
-        self._wear = Wear(_LAST, _MARGIN)
+        self._wear, self._trust = Wear(_LAST, _MARGIN), Trust()
+        #: Costs in solutions: of this correction so far, and of the last one with a new factor.
+        self._spent = self._with_new = 0.0
         self.factors = 0
         self.krylov: list[int] = []
         if kept and f"{_MATRIX}.data" in kept:
@@ -79,6 +83,8 @@ class LaggedFactor:
             "lagged.unknowns": touched.unknowns,
             "lagged.spent": self._wear.persistent(),
             "lagged.flags": np.array([self._single, self._due]),
+            "lagged.trust": self._trust.persistent(),
+            "lagged.with_new": np.array(self._with_new),
             **{f"{_MATRIX}.{part}": getattr(self._of_factor, part) for part in PARTS},
             **{f"{_SLOPE}.{part}": getattr(self._slope, part) for part in PARTS},
             **{f"{_BORDER}{name}": one for name, one in factor.persistent().items()},
@@ -93,6 +99,8 @@ class LaggedFactor:
         self._slope = scipy.sparse.csr_array(slope, (len(slope[-1]) - 1, columns))
         self._single, self._due = map(bool, kept["lagged.flags"])
         self._wear.restore(kept["lagged.spent"])
+        self._trust.restore(kept["lagged.trust"])
+        self._with_new = float(kept["lagged.with_new"])
         self._factor = self._made(unknowns)
         begin = len(_BORDER)
         own = {name[begin:]: one for name, one in kept.items() if name.startswith(_BORDER)}
@@ -111,21 +119,50 @@ class LaggedFactor:
             b: Right-hand side, (n,).
             rtol: Norm of the residual over that of `b` at which to stop.
         """
-        fresh = self._due and self._renewed(tangent)
         self.krylov.append(0)
+        self._spent = 0.0
+        untried = self._trust.skips()
+        if untried and self._with_new > self._whole_cost:
+            self._due = True
+            return self._whole(tangent, b)
+        found = self._with_kept(tangent, b, rtol, untried)
+        if not untried:
+            self._trust.add(self._spent, self._whole_cost)
+        return self._whole(tangent, b) if found is None else found
+
+    def _with_kept(self, tangent: Mat, b: Floats, rtol: float, anew: bool) -> Floats | None:
+        """A correction with a factor that is kept, or that is from now on; None where none leads.
+
+        Args:
+            tangent: J.
+            b: Right-hand side, (n,).
+            rtol: Norm of the residual over that of `b` at which to stop.
+            anew: Whether the one that there is is not tried.
+        """
+        fresh = (anew or self._due) and self._renewed(tangent)
         found, left = self._corrected(tangent, b, rtol, fresh)
         if not left <= rtol and not fresh and self._renewed(tangent):
             found, left = self._corrected(tangent, b, rtol, True)
         if not left <= rtol and self._single and self._doubled(tangent):
             found, left = self._corrected(tangent, b, rtol, True)
         # the border, in single precision, cannot tell stiff contacts from the bodies
-        return found if left <= rtol else self._whole(tangent, b)
+        return found if left <= rtol else None
 
     def close(self) -> None:
         """Give back the memory."""
         if self._factor is not None:
             self._factor.close()
         self._factor = None
+
+    @property
+    def _whole_cost(self) -> float:
+        """What a factorisation of all unknowns costs, in solutions: none where there is no other.
+
+        Operations are about those for the interior, and take half of the time in single precision.
+        """
+        if self._factor is None:
+            return 0.0
+        return (2.0 if self._single else 1.0) * self._factor.solutions_per_factor + 1.0
 
     def _whole(self, tangent: Mat, b: Floats) -> Floats | None:
         """The correction by a factorisation of all unknowns; None where the tangent is singular."""
@@ -188,8 +225,11 @@ class LaggedFactor:
         """Compare what this correction has cost with the average since the last factor."""
         if not np.isfinite(left):
             return
+        self._spent += cost
         if fresh:
             self._wear.begin(factor.solutions_per_factor)
+            self._spent += factor.solutions_per_factor
+            self._with_new = factor.solutions_per_factor + cost
         self._wear.add(cost, left)
         self._due = self._wear.worn
 
