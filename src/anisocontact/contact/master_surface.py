@@ -12,7 +12,7 @@ from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.contact.sweep import Sweep
+from anisocontact.contact.sweep import ROWS, Sweep
 from anisocontact.mesh.split import Route, Split, arranged
 
 
@@ -143,29 +143,46 @@ class MasterSurface:
     def names(self, nodes: Locals) -> Locals:
         """Nodes of facets of this process by the first of these and their place on it.
 
+        Images go by the node of the mesh and their row: facets of order 1 in the plane have none
+        of the nodes themselves.
+
         Args:
             nodes: Numbered as `reference`, -1 for none.
 
         Returns:
             Numbers that do not depend on how the mesh is distributed, -1 for none.
         """
-        known, first = np.unique(self.facets.nodes, return_index=True)
-        facet, place = np.divmod(first[np.searchsorted(known, nodes[nodes >= 0])], self._width)
+        there = nodes >= 0
+        row, of_mesh = self._row_and_node(nodes[there])
+        known, first = np.unique(self._row_and_node(self.facets.nodes)[1], return_index=True)
+        facet, place = np.divmod(first[np.searchsorted(known, of_mesh)], self._width)
         names = np.full_like(nodes, -1)
-        names[nodes >= 0] = self._width * self.numbers[facet] + place
+        names[there] = self._images * (self._width * self.numbers[facet] + place) + row
         return names
 
     def of_names(self, names: Locals) -> Locals:
         """Nodes of `names`, whose facets this process has."""
         there = names >= 0
         nodes = np.full_like(names, -1)
-        facet, place = self.facets_of_names(names[there]), names[there] % self._width
-        nodes[there] = self.facets.nodes[self.renumbered(facet), place]
+        place, row = np.divmod(names[there], self._images)
+        facet = self.renumbered(self.facets_of_names(names[there]))
+        _, of_mesh = self._row_and_node(self.facets.nodes[facet, place % self._width])
+        nodes[there] = row * node_count(self._space) + of_mesh
         return nodes
 
     def facets_of_names(self, names: Locals) -> Locals:
         """Numbers in the whole group of the facets of `names`, -1 for none."""
-        return names // self._width
+        return names // (self._width * self._images)
+
+    def _row_and_node(self, nodes: Locals) -> tuple[Locals, Locals]:
+        """Row of images that nodes are in, and the nodes of the mesh that they are images of."""
+        of_mesh = self.local_names(nodes)
+        return (nodes - of_mesh) // node_count(self._space), of_mesh
+
+    @property
+    def _images(self) -> int:
+        """How many images a node of the mesh has, itself among them."""
+        return 1 if self._sweep is None else len(ROWS)
 
     @property
     def _width(self) -> int:
