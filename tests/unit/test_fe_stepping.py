@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -178,10 +179,18 @@ def test_a_cell_turned_inside_out_is_no_solution(fe):
     assert -1.0 < problem.u.x.array.reshape(-1, 3)[top, 2].min() < -0.9
 
 
+def _touching(points: int) -> Any:
+    """What is watched of a contact, with points that stay on the one facet of their master."""
+    return SimpleNamespace(
+        trial=SimpleNamespace(status=np.zeros(points, dtype=np.int8)),
+        projected_facets=lambda: np.zeros(points, dtype=np.int64),
+        located=lambda: np.ones(points, dtype=bool),
+    )
+
+
 def test_alternating_points_are_found():
     """Requirement: chattering is detected: points that flip, not those that change once."""
-    trial = SimpleNamespace(status=np.zeros(3, dtype=np.int8))
-    contact = SimpleNamespace(trial=trial, projected_facets=lambda: np.zeros(3, dtype=np.int64))
+    contact = _touching(3)
     watch = StatusWatch([contact])
     assert not watch.unsettled()
     for i in range(6):
@@ -199,13 +208,13 @@ def test_alternating_points_are_found():
 
 def test_points_at_the_border_of_the_master_are_named():
     """Requirement: a point that leaves its master and comes back is told from one that flips."""
-    trial = SimpleNamespace(status=np.zeros(2, dtype=np.int8))
-    contact = SimpleNamespace(trial=trial, projected_facets=lambda: np.zeros(2, dtype=np.int64))
+    contact = _touching(2)
     watch = StatusWatch([contact])
     assert not watch.on_border(0).any()
     for i in range(6):
         contact.trial.status[:] = i % 2
-        watch.note(1.0, [np.array([True, i % 2 == 1])])
+        contact.located = lambda i=i: np.array([True, i % 2 == 1])
+        watch.note(1.0)
     assert watch.alternating()[0].all()
     assert watch.on_border(0).tolist() == [False, True]
     found = [Culprit("flipping", (0.0, 0.0, 0.0), "", border=bool(b)) for b in watch.on_border(0)]

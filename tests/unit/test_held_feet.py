@@ -131,7 +131,11 @@ def _contact(codes: list[int]) -> Any:
     trial = SimpleNamespace(status=np.ones(1, dtype=np.int8))
     codes = list(codes)
     return SimpleNamespace(
-        trial=trial, held=held, hold=held.append, projected_facets=lambda: np.array([codes.pop(0)])
+        trial=trial,
+        held=held,
+        hold=held.append,
+        located=lambda: np.ones(1, dtype=bool),
+        projected_facets=lambda: np.array([codes.pop(0)]),
     )
 
 

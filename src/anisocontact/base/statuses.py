@@ -4,3 +4,5 @@ from __future__ import annotations
 
 #: Names of the codes of a point's status.
 STATUS = ("open", "stick", "slip")
+#: The codes.
+OPEN, STICK, SLIP = range(len(STATUS))

@@ -209,6 +209,10 @@ class Contact(Pass):
         """As of `Master`."""
         return self.master.projected_facets(len(self.state))
 
+    def located(self) -> Flags:
+        """Whether each point of the trial has its master below it, (n,)."""
+        return self.master.located(self.trial.state)
+
     def hold(self, points: Flags) -> None:
         """As of `Master`."""
         self.master.hold(points)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.interface import STATUS, Response, State
+from anisocontact.base.statuses import OPEN
+from anisocontact.interface import Response, State
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Slid:
     @classmethod
     def of(cls, state: State) -> Slid:
         """That of a state."""
-        touching = state["status"] != STATUS.index("open")
+        touching = state["status"] != OPEN
         return cls(state["slip_accumulated"].copy(), state["dissipation"].copy(), touching)
 
 

@@ -21,10 +21,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.statuses import OPEN
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.multipliers import RATIO, ContactTrial
 from anisocontact.contact.semismooth import Semismooth
-from anisocontact.interface import STATUS, Response, State
+from anisocontact.interface import Response, State
 from anisocontact.interface.series import SeriesHistory
 
 #: Change of the multipliers over the tractions that is good enough to go on with a stiffer layer,
@@ -32,8 +33,6 @@ from anisocontact.interface.series import SeriesHistory
 ENOUGH = 1e-5
 #: Corrections of the coordinates that slip counts from.
 _CORRECTIONS = 3
-
-_OPEN = STATUS.index("open")
 
 
 class Layer:
@@ -152,7 +151,7 @@ class Layer:
     def _found(self, step: ContactTrial) -> Floats:
         """Tangential tractions of a trial, (n, 3), stress."""
         force = step.now.vector(step.answer.state["traction"])
-        return np.where((step.answer.status != _OPEN)[:, None], force, 0.0)
+        return np.where((step.answer.status != OPEN)[:, None], force, 0.0)
 
     def _shift(self, state: State, history: SeriesHistory, way: Floats, now: Frames) -> None:
         """Let the slip of a state count from places farther on.
@@ -183,7 +182,7 @@ class Layer:
         own, axes = self._own, self._way.axes
         force = before.turned_to(now, before.vector(own["stored"]))
         slip = before.turned_to(now, before.moved(own["elastic"]))
-        keep = (own["status"] != _OPEN) & axes.any(axis=(1, 2))
+        keep = (own["status"] != OPEN) & axes.any(axis=(1, 2))
         axes = axes[keep]
         along = np.einsum("nad,nd->na", axes, slip[keep])[..., None]
         kept = history.keeps @ _components(axes, force[keep]) - history.recovers @ along
@@ -206,7 +205,7 @@ class _Way:
 
     @classmethod
     def of(cls, step: ContactTrial, compliance: float) -> _Way:
-        touching = step.answer.status != _OPEN
+        touching = step.answer.status != OPEN
         axes = step.axes[touching]
         # the layer is one of the axes: e_a . way = c t_a for the force t_a e_a
         dual = np.linalg.solve(axes @ axes.swapaxes(1, 2), axes)
@@ -228,6 +227,6 @@ def _components(axes: Floats, vectors: Floats) -> Floats:
 
 def _fraction(start: State, trial: Response) -> Floats:
     """Part of the increment that each point spends in contact, (n,)."""
-    closes = (start["status"] == _OPEN) & (start["gap"] > 0.0) & (trial.gap < 0.0)
+    closes = (start["status"] == OPEN) & (start["gap"] > 0.0) & (trial.gap < 0.0)
     way = np.where(closes, trial.gap - start["gap"], 1.0)
     return np.where(closes, trial.gap / way, 1.0)

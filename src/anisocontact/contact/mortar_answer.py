@@ -10,16 +10,13 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Locals
+from anisocontact.base.statuses import SLIP
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.mortar_weights import MortarWeights
 from anisocontact.contact.quadrature import Couplings, FacetQuadrature
-from anisocontact.interface import STATUS
 from anisocontact.surfaces import default_threads
-
-#: Status of a node that slides.
-SLIP = STATUS.index("slip")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Locals
+from anisocontact.base.statuses import SLIP
 from anisocontact.contact.along_normals import OPPOSED
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
@@ -25,7 +26,7 @@ from anisocontact.contact.fold import Fold
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
 from anisocontact.contact.meshed_master import MeshedMaster
-from anisocontact.contact.mortar_answer import SLIP, MortarAnswer, MortarLinear, MortarState
+from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of

@@ -18,8 +18,9 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.statuses import OPEN, STICK
 from anisocontact.contact.frames import Frames
-from anisocontact.interface import STATUS, VECTOR_FORMS, ContactLaw, Interface, Response, State
+from anisocontact.interface import VECTOR_FORMS, ContactLaw, Interface, Response, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
 from anisocontact.rigid import RigidBody
 
@@ -45,9 +46,6 @@ FAR = 1e8
 SMALLEST = 1e-9
 #: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
 _EXPLICIT = "explicit"
-
-#: Codes of a status.
-OPEN, STICK, SLIP = (STATUS.index(name) for name in ("open", "stick", "slip"))
 
 
 def check(augmentation: Augmentation, law: AugmentedLaw) -> None:

@@ -20,17 +20,16 @@ from typing import ClassVar
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.statuses import OPEN, STICK
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
     EXACT,
     LEAST_RATIO,
-    OPEN,
     RATIO,
     ROUNDED,
     SHARE,
     SHARED_RATIO,
-    STICK,
     ContactTrial,
     Multipliers,
     left_by,

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.statuses import SLIP, STICK
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Master
 from anisocontact.contact.multipliers import (
     RATIO,
-    SLIP,
-    STICK,
     AugmentedLaw,
     ContactTrial,
     Multipliers,

@@ -336,8 +336,7 @@ class Solver:
         raise stop
 
     def _report(self, iteration: int, residual: float) -> None:
-        contacts = self.problem.contacts
-        self._watch.note(residual, [c.master.located(c.trial.state) for c in contacts])
+        self._watch.note(residual)
         if not self.problem.stabilisation.flow.flows:  # bodies that flow go far in an attempt
             self._watch.hold()
         if self._on_iteration is not None:

@@ -35,16 +35,15 @@ class StatusWatch:
         for memory in (self._statuses, self._feet, self._above, self._residuals):
             memory.clear()
 
-    def note(self, residual: float, above: Sequence[Flags] = ()) -> None:
+    def note(self, residual: float) -> None:
         """Take status and feet of the last evaluation.
 
         Args:
             residual: Its residual, over the forces at work.
-            above: Which points of each contact have their master below them, if that is known.
         """
         self._statuses.append([c.trial.status.astype(np.int64) for c in self._contacts])
         self._feet.append([contact.projected_facets() for contact in self._contacts])
-        self._above.append([one.astype(np.int64) for one in above])
+        self._above.append([contact.located().astype(np.int64) for contact in self._contacts])
         self._residuals.append(residual)
 
     def hold(self) -> None:
@@ -68,8 +67,6 @@ class StatusWatch:
 
     def on_border(self, contact: int) -> Flags:
         """Points of a contact that were above the master and beside it, (points,)."""
-        if not all(self._above):
-            return np.zeros(len(self._contacts[contact].trial.status), dtype=bool)
         above = self._of(self._above, contact)
         return np.asarray(above.any(axis=0) & ~above.all(axis=0))
 

@@ -25,9 +25,9 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI
+from anisocontact.base.statuses import OPEN
 from anisocontact.contact import Contact
 from anisocontact.contact.initial import OVERLAP
-from anisocontact.interface import STATUS
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import Parts
 
@@ -285,7 +285,7 @@ class ContactWork:
         for contact in self._contacts:
             before, now = contact.state["status"], contact.trial.state["status"]
             changed += int(np.count_nonzero((before != now) | _reversed(contact)))
-            touching += int(np.count_nonzero(now != STATUS.index("open")))
+            touching += int(np.count_nonzero(now != OPEN))
         changed, touching = self._comm.allreduce(np.array([changed, touching]))
         return len(self._places) > 1 or bool(changed > CHANGED * touching)
 
