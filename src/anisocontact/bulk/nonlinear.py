@@ -229,14 +229,17 @@ class NonlinearBulk:
 def _check_stiff(model: Model, materials: Mapping[str, Material], diagonal: Vec) -> None:
     """Refuse a body that has no stiffness at rest; collective.
 
+    Displacements across the plane, which have none in plane stress, are held there.
+
     Raises:
         InputError: A node of it can be moved without a force, or by one that pulls back.
     """
     rows, space = diagonal.array_r, model.space
+    components = np.arange(space.dofmap.bs if model.idealisation.lateral else 2)
     for name in model.body_names():
         nodes = np.unique(space.dofmap.list[model.cells(name)])
         own = nodes[nodes < space.dofmap.index_map.size_local, None] * space.dofmap.bs
-        here = float(rows[own + np.arange(space.dofmap.bs)].min(initial=np.inf))
+        here = float(rows[own + components].min(initial=np.inf))
         least = min(model.mesh.comm.allgather(here))
         if name in materials and not least > 0.0:
             text = f"no stiffness at rest: that of a node is {least:.3g}, must be > 0"
