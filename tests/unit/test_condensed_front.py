@@ -10,6 +10,7 @@ import pytest
 import scipy.sparse
 from tests.unit.condensed_samples import condensation, matrix_of
 
+from anisocontact.base.fenicsx import PETSc
 from anisocontact.solver.strategies.condensed.bordered import BorderedLU, whole
 from anisocontact.solver.strategies.condensed.bordered import reachable as borders
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
@@ -186,6 +187,40 @@ def test_few_rows_of_a_border_are_put_right() -> None:
     again.restore(factor.persistent())
     again.solve(b, y)
     np.testing.assert_array_equal(y.array_r, x.array_r)
+
+
+@pytest.mark.skipif(not borders(), reason="PETSc without MUMPS")
+def test_a_factor_of_other_values_needs_no_other_analysis() -> None:
+    """Other values in the same places, and matrices of other places.
+
+    Requirement: MUMPS analyses once; solutions are NumPy's dense ones up to the border's single
+    precision; a matrix of other places is not taken, and leaves the factor as it is.
+    """
+    n, border, none = 300, np.arange(50, 150), whole(100)
+    matrix = matrix_of(n, 5)
+    matrix.sort_indices()
+    other = matrix.copy()
+    other.data *= 1.0 + 0.2 * np.random.default_rng(2).random(other.nnz)  # not symmetric
+    PETSc.Log.begin()
+    analysed = PETSc.Log.Event("MatLUFactorSym")
+    factor = BorderedLU(aij(matrix), border)
+    before = analysed.getPerfInfo()["count"]
+
+    def error(of: Any) -> float:
+        factor.renew(scipy.sparse.csr_array((100, 100)), *none)
+        x, b = aij(of).createVecs()
+        b.array[:] = of @ np.arange(1.0, n + 1.0)
+        factor.solve(b, x)
+        return float(np.abs(x.array_r - np.arange(1.0, n + 1.0)).max())
+
+    assert error(matrix) < 1e-2
+    assert not factor.take(scipy.sparse.eye_array(n, format="csr"), border, False)
+    assert not factor.take(matrix, border[1:], False)
+    assert error(matrix) < 1e-2
+    assert factor.take(other, border, False)
+    assert error(other) < 1e-2 < error(matrix)
+    assert analysed.getPerfInfo()["count"] == before
+    factor.close()
 
 
 def test_bodies_that_only_springs_hold_are_not_eliminated() -> None:

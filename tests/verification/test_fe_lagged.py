@@ -28,7 +28,8 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.strategies.condensed import bordered, lagged, lagged_newton
+from anisocontact.solver.strategies.condensed import bordered, interior, lagged, lagged_newton
+from anisocontact.solver.strategies.condensed.factor import singular
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from anisocontact.solver.strategies.condensed.lagged_newton import CAREFUL, ROUGH, LaggedNewton
 from anisocontact.surfaces import make_surface
@@ -283,6 +284,32 @@ def test_a_factor_that_is_made_again_goes_on_as_the_first_one() -> None:
     assert again.krylov[-1] == first.krylov[-1]
     for one in (first, again):
         one.close()
+
+
+def test_where_there_is_no_new_factor_the_old_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """MUMPS fails at a tangent far from the one that the factor is of.
+
+    Requirement: the factor of before solves, with the iterations that it would have taken.
+    """
+    problem = _on_plane()
+    problem.set_load_factor(1.0, 1.0)
+    factor = LaggedFactor(problem, lambda _: None)
+    for distortion in (1e-9, 1e-3):
+        assert _corrected(problem, factor, distortion) < 1e-5
+    used = factor.krylov[-1]
+    check, failed = interior.Interior._check, list[Any]()
+
+    def fails(of: interior.Interior) -> None:
+        failed.append(of)
+        if len(failed) == 1:
+            raise singular()
+        check(of)
+
+    monkeypatch.setattr(interior.Interior, "_check", fails)
+    factor._due = True
+    assert _corrected(problem, factor, 1e-3) < 1e-5
+    assert (len(failed), factor.factors, factor.krylov[-1]) == (2, 1, used)
+    factor.close()
 
 
 def test_couplings_that_are_in_the_border_need_no_new_factor() -> None:

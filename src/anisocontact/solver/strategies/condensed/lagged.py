@@ -12,6 +12,7 @@ from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
+from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
 from anisocontact.solver.strategies.condensed.once import once
@@ -240,11 +241,12 @@ class LaggedFactor:
         whole = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
         self._of_factor = touched.without(whole)
         try:
-            factor = self._made(touched.unknowns)
+            factor = self._retaken(touched.unknowns, before) or self._made(touched.unknowns)
         except SingularError:
             self._of_factor = before
             return False
-        self.close()
+        if factor is not self._factor:
+            self.close()
         rows = self._problem.bulk.volume_rows()
         if rows is not None:
             self._slope = rows.slope
@@ -257,17 +259,32 @@ class LaggedFactor:
         )
         return True
 
+    def _retaken(self, unknowns: Ints, before: Sparse) -> BorderedLU | None:
+        """The factor that there is, now of what has been taken of a tangent, if it has the places.
+
+        Args:
+            unknowns: Of the border.
+            before: What it is of.
+
+        Raises:
+            SingularError: There is none; it is that of before again.
+        """
+        factor = self._factor
+        if factor is None:
+            return None
+        try:
+            return factor if factor.take(self._of_factor, unknowns, self._single) else None
+        except SingularError:
+            factor.take(before, unknowns, self._single)
+            raise
+
     def _made(self, unknowns: Ints) -> BorderedLU:
         """The factor of what has been taken of a tangent.
 
         Raises:
             SingularError: There is none.
         """
-        tangent = aij(self._of_factor, 3)
-        try:
-            return BorderedLU(tangent, unknowns, self._single)
-        finally:
-            tangent.destroy()
+        return BorderedLU(aij(self._of_factor, 3), unknowns, self._single)
 
     def _doubled(self, tangent: Mat) -> bool:
         """Make a factor in double precision, from now on."""

@@ -53,11 +53,18 @@ class Touched:
         return not np.isin(self._select(), self.unknowns).all()
 
     def without(self, tangent: Sparse) -> Sparse:
-        """A tangent of all unknowns less `tangent`: of the bodies, and of nodes that are new."""
-        count = len(self.unknowns)
-        ones = (np.ones(count), (self.unknowns, np.arange(count)))
-        spread = scipy.sparse.csr_array(ones, shape=(self._problem.unknowns, count))
-        return (tangent - spread @ self.tangent() @ spread.T).tocsr()
+        """A tangent of all unknowns less `tangent`: of the bodies, and of nodes that are new.
+
+        Its entries stay where they are, also those that are zero now.
+        """
+        n, own = self._problem.unknowns, self.tangent()
+        own.eliminate_zeros()
+        own = own.tocoo()
+        of_rows = np.repeat(np.arange(n) * n, np.diff(tangent.indptr))
+        asked = self.unknowns[own.row] * n + self.unknowns[own.col]
+        left = tangent.copy()
+        left.data[np.searchsorted(of_rows + tangent.indices, asked)] -= own.data
+        return left
 
     def shares(self) -> tuple[Sparse, Flags]:
         """How slave nodes follow what is opposite, see `Front`, and which unknowns are theirs."""
