@@ -7,11 +7,16 @@ from collections.abc import Mapping
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.strategies import AUTO, CONDENSED, DIRECT, ITERATIVE
+from anisocontact.solver.strategies.database import Database, OptionValue
 
 _OF_PETSC = ("snes_", "ksp_", "pc_", "mat_", "vec_", "sub_", "mg_", "fieldsplit_")
 _OF_LEVELS = (*_OF_PETSC, "smoother_", "coarse_", "aggregates_")
 #: How names of options begin that a strategy reads.
 PARTS = {AUTO: _OF_LEVELS, ITERATIVE: _OF_LEVELS, DIRECT: _OF_PETSC, CONDENSED: _OF_PETSC}
+#: ... and of those that PETSc reads before it has a matrix of some size.
+_EARLY = ("snes_", "ksp_", "smoother_ksp_", "coarse_ksp_", "aggregates_pc_gamg_")
+_OF_MUMPS = ("mat_mumps_", "coarse_mat_mumps_")
+_PREFIX = "anisocontact_check_"
 
 
 def check_options(options: Mapping[str, str | int | float | bool], strategy: str) -> None:
@@ -31,26 +36,82 @@ def check_options(options: Mapping[str, str | int | float | bool], strategy: str
                 f"no part of the solver reads it: names begin with one of {', '.join(parts)}",
                 field=f"solver.options.{name}",
             )
-    prefix = "anisocontact_check_"
-    database = PETSc.Options()
-    for name, value in options.items():
-        database.setValue(prefix + name, value)
-    snes = PETSc.SNES().create()
-    snes.setOptionsPrefix(prefix)
     try:
-        snes.setFromOptions()
-        snes.getKSP().setFromOptions()
-        snes.getKSP().getPC().setFromOptions()
-        for name in options:
-            # What the matrices and preconditioners read, they read when they are set up.
-            if name.startswith(("snes_", "ksp_")) and not database.used(prefix + name):
-                raise InputError(
-                    "PETSc's SNES and KSP know no such option", field=f"solver.options.{name}"
-                )
+        unread = _unread(options, strategy)
     except PETSc.Error as error:
-        reason = str(error).splitlines()[-1]
-        raise InputError(f"PETSc refuses them: {reason}", field="solver.options") from None
-    finally:
+        raise _refused(options, strategy, _reason(error)) from None
+    for name in unread:
+        raise InputError("PETSc knows no such option", field=f"solver.options.{name}")
+
+
+def _refused(options: Mapping[str, OptionValue], strategy: str, reason: str) -> InputError:
+    """What PETSc refuses, for a reason: one option, or all together."""
+    for name, value in options.items():
+        try:
+            _unread({name: value}, strategy)
+        except PETSc.Error as error:
+            if _reason(error) == reason:
+                text = f"{value!r} given, PETSc refuses it: {reason}"
+                return InputError(text, field=f"solver.options.{name}")
+    return InputError(f"PETSc refuses them: {reason}", field="solver.options")
+
+
+def _reason(error: PETSc.Error) -> str:
+    return str(error).splitlines()[-1].split("] ", 1)[-1]
+
+
+def _unread(options: Mapping[str, OptionValue], strategy: str) -> list[str]:
+    """Options that nothing reads of those that are read early.
+
+    Raises:
+        PETSc.Error: PETSc refuses one.
+    """
+    levels = strategy in (AUTO, ITERATIVE)
+    database = Database(_PREFIX, options, "solver.options")
+    with database:
+        snes = PETSc.SNES().create(PETSc.COMM_SELF)
+        snes.setOptionsPrefix(_PREFIX)
+        snes.setFromOptions()
+        mumps = _by_mumps(snes.getKSP(), factorises=strategy != ITERATIVE)
         snes.destroy()
-        for name in options:
-            database.delValue(prefix + name)
+        for part in ("smoother_", "coarse_") if levels else ():
+            ksp = PETSc.KSP().create(PETSc.COMM_SELF)
+            ksp.setOptionsPrefix(_PREFIX + part)
+            mumps = _by_mumps(ksp, factorises=part == "coarse_") or mumps
+            ksp.destroy()
+        if levels:
+            pc = PETSc.PC().create(PETSc.COMM_SELF)
+            pc.setOptionsPrefix(f"{_PREFIX}aggregates_")
+            pc.setType(PETSc.PC.Type.GAMG)
+            pc.setFromOptions()
+            pc.destroy()
+    early = (*_EARLY, *(_OF_MUMPS if mumps else ()))
+    return [name for name in options if name.startswith(early) and name in database.left]
+
+
+def _by_mumps(ksp: PETSc.KSP, factorises: bool) -> bool:
+    """Let a linear solver read its options, for a factor with a matrix of one row.
+
+    Args:
+        ksp: The solver.
+        factorises: Whether it factorises unless an option says otherwise.
+
+    Returns:
+        Whether MUMPS does.
+    """
+    pc = ksp.getPC()
+    if factorises:
+        pc.setType(PETSc.PC.Type.LU)
+        if PETSc.Sys.hasExternalPackage("mumps"):
+            pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+    ksp.setFromOptions()
+    pc.setFromOptions()
+    if pc.getType() not in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY):
+        return False
+    one = PETSc.Mat().createAIJ(1, comm=PETSc.COMM_SELF)
+    one.setValue(0, 0, 1.0)
+    one.assemble()
+    ksp.setOperators(one)
+    ksp.setUp()
+    one.destroy()
+    return bool(pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS)

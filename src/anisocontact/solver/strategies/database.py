@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager
 from typing import Any
 
@@ -46,13 +46,20 @@ class Database:
         there = self._options.getAll()
         self._set = [name for name in self._given if name not in there]
         for name in self._set:
-            self._options.setValue(name, self._given[name])
+            value = self._given[name]
+            # a monitor takes the name of what it writes to, or nothing; nothing is true as well
+            self._options.setValue(name, None if value is True else value)
 
     def __exit__(self, *_: object) -> None:
         database = PETSc.Options()
         self._unread -= {name for name in self._given if database.used(self._prefix + name)}
         for name in self._set:
             self._options.delValue(name)
+
+    @property
+    def left(self) -> Set[str]:
+        """Names of the options that nothing on this process has read."""
+        return self._unread
 
     @contextmanager
     def blamed(self, together: Together | None = None) -> Iterator[None]:
