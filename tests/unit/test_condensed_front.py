@@ -11,11 +11,11 @@ import scipy.sparse
 from tests.unit.condensed_samples import condensation, matrix_of
 
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.solver.strategies.condensed.bordered import BorderedLU, whole
+from anisocontact.solver.strategies.condensed.bordered import BorderedLU
 from anisocontact.solver.strategies.condensed.bordered import reachable as borders
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.factor import aij
-from anisocontact.solver.strategies.condensed.front import Front
+from anisocontact.solver.strategies.condensed.front import Front, whole
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 

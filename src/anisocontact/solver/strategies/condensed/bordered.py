@@ -14,7 +14,7 @@ from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import call_petsc, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular
-from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse
+from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse, whole
 from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
@@ -54,12 +54,6 @@ def reachable() -> bool:
     factor.solve(b, x)
     factor.close()
     return bool(np.allclose(x.array_r, 1.0))
-
-
-def whole(count: int) -> tuple[Sparse, Flags]:
-    """Shares and slave nodes of a border without any, see `Front`."""
-    none = scipy.sparse.csr_array((count, count), dtype=np.float32)
-    return none, np.zeros(count, dtype=np.bool_)
 
 
 class BorderedLU:
@@ -247,8 +241,10 @@ class BorderedLU:
         assert front is not None, "`renew` comes first"
         assert updated is not None, "`renew` comes first"
         given = (border / size).astype(np.float32)
-        own = front.solution(updated, given + self._shares.T @ given)
-        border[:] = size * (own + self._shares @ own)
+        if self._shares.nnz:
+            given += self._shares.T @ given
+        own = front.solution(updated, given)
+        border[:] = size * (own + self._shares @ own if self._shares.nnz else own)
         call_petsc("MatDenseRestoreArray", handle, ctypes.byref(entries))
         return 0
 

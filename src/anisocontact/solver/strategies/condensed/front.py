@@ -144,6 +144,12 @@ class Front:
         return x
 
 
+def whole(count: int) -> tuple[Sparse, Flags]:
+    """Shares and slave nodes of a border without any, see `Front`."""
+    none = scipy.sparse.csr_array((count, count), dtype=np.float32)
+    return none, np.zeros(count, dtype=np.bool_)
+
+
 def follow(matrix: Reals, shares: Sparse) -> None:
     """Make a matrix A that of unknowns of which others follow, `(1 + P)^T A (1 + P)`."""
     back = shares.T.tocsr()

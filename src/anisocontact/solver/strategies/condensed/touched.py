@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.array_types import Flags, Ints
-from anisocontact.solver.strategies.condensed.front import Sparse
+from anisocontact.solver.strategies.condensed.front import Sparse, whole
 from anisocontact.solver.strategies.condensed.places import Places
 from anisocontact.solver.system.problem import Problem
 
@@ -60,17 +60,23 @@ class Touched:
         n, own = self._problem.unknowns, self.tangent()
         own.eliminate_zeros()
         own = own.tocoo()
-        of_rows = np.repeat(np.arange(n) * n, np.diff(tangent.indptr))
+        places = np.repeat(np.arange(n) * n, np.diff(tangent.indptr)) + tangent.indices
         asked = self.unknowns[own.row] * n + self.unknowns[own.col]
-        left = tangent.copy()
-        left.data[np.searchsorted(of_rows + tangent.indices, asked)] -= own.data
-        return left
+        found = np.minimum(np.searchsorted(places, asked), len(places) - 1)
+        there, left = places[found] == asked, tangent.copy()
+        left.data[found[there]] -= own.data[there]
+        if there.all():
+            return left
+        rows, columns = np.divmod(asked[~there], n)
+        return left - scipy.sparse.csr_array((own.data[~there], (rows, columns)), shape=(n, n))
 
     def shares(self) -> tuple[Sparse, Flags]:
         """How slave nodes follow what is opposite, see `Front`, and which unknowns are theirs."""
         problem = self._problem
         alone = problem.constraints.gathering() is None
         opposite = problem.contact_term.opposite() if alone else []
+        if not opposite:
+            return whole(len(self.unknowns))
         shares, slaves = self._places.shares(opposite, problem.unknowns)
         if shares.nnz:
             beside = self._places.following(problem.contact_term.beside(), problem.unknowns)
