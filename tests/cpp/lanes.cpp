@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "anisocontact/mortar/lanes.hpp"
+#include "anisocontact/tensor/padded.hpp"
 
 namespace anisocontact {
 namespace {
@@ -44,6 +45,20 @@ bool takes_four() {
   return right;
 }
 
+/// Vectors one after the other: each one's zero is where the next begins, the last one's is behind it.
+bool padded_ends_with_zero() {
+  const Padded u = Vec3<double>(1.0, 2.0, 3.0), v = Vec3<double>(8.0, 4.0, 2.0);
+  Padded sum = 2.0 * u - v;
+  sum.add(3.0, u);
+  sum += -u;
+  std::array<double, 7> x;
+  x.fill(-1.0);
+  u.to(x.data());
+  sum.to(x.data() + 3);
+  const std::array<double, 7> right{1.0, 2.0, 3.0, -4.0, 4.0, 10.0, 0.0};
+  return x == right && sum.vector() == Vec3<double>(sum[0], sum[1], sum[2]);
+}
+
 bool twins_have_parts() {
   mortar::Twins<8> both;
   const std::vector<double> x = counted(8);
@@ -60,7 +75,7 @@ bool twins_have_parts() {
 int main() {
   using namespace anisocontact;
   const bool right = reads_and_writes<4>(4) && reads_and_writes<8>(4) && reads_and_writes<12>(8) &&
-                     takes_four() && twins_have_parts();
+                     takes_four() && padded_ends_with_zero() && twins_have_parts();
   std::puts(right ? "lanes without vectors: passed" : "lanes without vectors: FAILED");
   return right ? 0 : 1;
 }

@@ -180,11 +180,11 @@ Eigen::Matrix3d matrix(const kernel::PairSlopes& d, std::size_t acts, std::size_
   using kernel::PairSlopes;
   Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
   for (std::size_t a = 0; a < 2; ++a)
-    m += d.along_friction[acts][a] * d.friction[a].by[input].transpose();
+    m += d.along_friction[acts][a] * d.friction[a].by[input].vector().transpose();
   if (input >= kernel::Near::inputs) return m;
   for (const std::size_t f : PairSlopes::terms(acts))
     if (f < (d.interior ? PairSlopes::first_beside : PairSlopes::near_forms))
-      m += d.along[acts][f] * d.near[f].by[input].transpose();
+      m += d.along[acts][f] * d.near[f].by[input].vector().transpose();
   return m;
 }
 
@@ -202,7 +202,7 @@ double difference(const kernel::PairResult& a, const kernel::PairSlopes& d,
     }
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < oracle::variables; ++j) {
-      const double mine = j < 12 ? d.near[i].by[j / 3][static_cast<Eigen::Index>(j % 3)] : 0.0;
+      const double mine = j < 12 ? d.near[i].by[j / 3][j % 3] : 0.0;
       shift.add(mine, b.xi[i].d[j]);
     }
   Compared sizes;

@@ -153,7 +153,7 @@ class CommittedPoint {
       f.xi[i] += by_way.dot(plane_.r[i]);
       f.turn[i] +=
           by_cosine * n0_[i] - by_nu[i] * cosine_ - by_flat[i] * rise_ - by_rise * flat_[i];
-      f.by[before_input(i)] -= by_before.dot(dual_[i]) * normal_;
+      f.by[before_input(i)].add(-by_before.dot(dual_[i]), normal_);
     }
   }
 
@@ -177,14 +177,15 @@ class CommittedPoint {
     const double up = y.dot(normal_);
     for (std::size_t j = 0; j < 2; ++j) {
       const double stretch = y.dot(dual_[j]);
-      f.by[before_input(j)] += (m.fall * stretch + m.upper[j] * up) * normal_ - stretch * m.w;
+      f.by[before_input(j)].add(m.fall * stretch + m.upper[j] * up, normal_);
+      f.by[before_input(j)].add(-stretch, m.w);
     }
   }
   /// Of the turned tangent b_i.
   void add_tangent(const Flat& k, std::size_t i, Form& f) const {
     const Vec3<double> y = add_turn(k, turned_[i], fall_[i], f);
     for (std::size_t j = 0; j < 2; ++j)
-      f.by[before_input(j)] += (fall_[i] * y.dot(dual_[j])) * normal_;
+      f.by[before_input(j)].add(fall_[i] * y.dot(dual_[j]), normal_);
     f.by[before_input(i)] += y;
   }
   /// What all turned vectors have in common besides dn_0 = - b^j (n_0 . d b_j), which adds

@@ -2,6 +2,7 @@
 // Linear forms in what moves a contact point, and the plane in which its law is solved.
 
 #include "anisocontact/kernel/carried.hpp"
+#include "anisocontact/tensor/padded.hpp"
 
 namespace anisocontact::kernel {
 
@@ -27,14 +28,14 @@ constexpr std::size_t slave_input(std::size_t i) { return index(Input::slave_tan
 /// A linear form: directly in the inputs, and through the coordinates of the projection, d xi^i, and
 /// the turn of the normal, nu_a = t_a . dn, which follow from them.
 struct Form {
-  std::array<Vec3<double>, inputs> by;
+  std::array<Padded, inputs> by;
   Flat xi, turn;
 
   void clear() {
-    by.fill(Vec3<double>::Zero());
+    by.fill(Padded());
     xi = turn = {};
   }
-  Vec3<double>& operator[](Input i) { return by[index(i)]; }
+  Padded& operator[](Input i) { return by[index(i)]; }
 };
 
 /// Where a point is in contact: the frame, the tangents of the master, and x - rho.
@@ -50,8 +51,8 @@ struct ContactPlane {
 
   /// Adds k dg, g = (x - rho) . n.
   void add_gap(double k, Form& f) const {
-    f[Input::slave] += k * n;
-    f[Input::position] -= k * n;
+    f[Input::slave].add(k, n);
+    f[Input::position].add(-k, n);
     const Flat side = along(apart);
     for (std::size_t i = 0; i < 2; ++i) {
       f.xi[i] -= k * n.dot(r[i]);
@@ -64,7 +65,7 @@ struct ContactPlane {
     const Flat mu = along(a.mu);
     for (std::size_t b = 0; b < 2; ++b)
       for (std::size_t i = 0; i < 2; ++i) {
-        f[b].by[first + i] += k[b] * a.c[i] * a.mu;
+        f[b].by[first + i].add(k[b] * a.c[i], a.mu);
         f[b].xi[i] += k[b] * a.by_xi[i];
         f[b].turn[i] -= k[b] * a.lift * mu[i];
       }

@@ -35,10 +35,7 @@ class Couple {
   /// Writes d m_j with the components of T; d xi and nu_a are there already.
   void differentiate(const Flat& force, PairSlopes& d) const noexcept {
     if (!frame_.interior())
-      for (std::size_t k = 0; k < 2; ++k) {
-        d.form(NearForm::bend, k).clear();
-        add_bend(1.0, k, d, d.form(NearForm::bend, k));
-      }
+      for (std::size_t k = 0; k < 2; ++k) bend(k, d);
     for (std::size_t j = 0; j < 2; ++j) {
       lift(j, d);
       if (frame_.interior())
@@ -49,33 +46,33 @@ class Couple {
   }
 
  private:
-  /// Adds k n_f . d rho_m.
-  void add_bend(double k, std::size_t m, PairSlopes& d, Near& f) const {
-    f.by[tangent_input(m)] += k * normal_;
-    for (std::size_t l = 0; l < 2; ++l)
-      f.add(k * normal_.dot(frame_.second(m, l)), d.form(NearForm::xi, l));
+  /// n_f . d rho_k.
+  void bend(std::size_t k, PairSlopes& d) const {
+    std::array<Padded, Near::inputs> direct;
+    direct[tangent_input(k)] = normal_;
+    d.put(NearForm::bend, k, direct,
+          {normal_.dot(frame_.second(k, 0)), normal_.dot(frame_.second(k, 1))});
   }
-  /// Adds k rho^j . d rho_m.
-  void add_stretch(double k, std::size_t j, std::size_t m, PairSlopes& d, Near& f) const {
-    f.by[tangent_input(m)] += k * dual_[j];
-    for (std::size_t l = 0; l < 2; ++l)
-      f.add(k * dual_[j].dot(frame_.second(m, l)), d.form(NearForm::xi, l));
+  /// Of k_m rho^j . d rho_m, by the coordinates of the projection.
+  Flat stretch(const Flat& k, std::size_t j) const {
+    const double mixed = dual_[j].dot(frame_.second(0, 1));
+    return {k[0] * dual_[j].dot(frame_.second(0, 0)) + k[1] * mixed,
+            k[0] * mixed + k[1] * dual_[j].dot(frame_.second(1, 1))};
   }
 
   /// What d (c T . rho^j) has besides c rho^j . dT, with dc = n_f . d(x - rho) - c^k n_f . d rho_k
   /// and T . d rho^j = - (rho^j . d rho_k) T^k + a^jk (T . n_f) (n_f . d rho_k).
   void lift(std::size_t j, PairSlopes& d) const {
-    Near& f = d.form(NearForm::lift, j);
-    f.clear();
-    f.by[index(Input::slave)] = upper_[j] * normal_;
-    f.by[index(Input::position)] = -f.by[index(Input::slave)];
-    for (std::size_t k = 0; k < 2; ++k) add_stretch(-above_ * upper_[k], j, k, d, f);
+    const Padded rise = upper_[j] * normal_, dual = dual_[j];
+    const Flat k{-above_ * upper_[0], -above_ * upper_[1]};
+    d.put(NearForm::lift, j, {{rise, -rise, k[0] * dual, k[1] * dual}}, stretch(k, j));
     d.direction(1 + j, NearForm::lift, j) = normal_;
     if (frame_.interior()) return;
     const double out = friction_.dot(normal_);
-    for (std::size_t k = 0; k < 2; ++k)
-      f.add(above_ * frame_.facet().a_contra(j, k) * out - upper_[j] * beside_[k],
-            d.form(NearForm::bend, k));
+    for (std::size_t m = 0; m < 2; ++m)
+      d.form(NearForm::lift, j)
+          .add(above_ * frame_.facet().a_contra(j, m) * out - upper_[j] * beside_[m],
+               d.form(NearForm::bend, m));
   }
 
   void inside(std::size_t j, PairSlopes& d) const {
@@ -96,15 +93,14 @@ class Couple {
           force[a] * (beside_[j] * n - above_ * n.dot(dual_[j]) * normal_);
       d.direction(1 + j, NearForm::bend, a) = -above_ * upper_[j] * dual_[a];
     }
-    Near& f = d.form(NearForm::beside, j);  // d c^j
-    f.clear();
-    f.by[index(Input::slave)] = dual_[j];
-    f.by[index(Input::position)] = -dual_[j];
-    f.add(-1.0, d.form(NearForm::xi, j));
-    for (std::size_t k = 0; k < 2; ++k) {
-      add_stretch(-beside_[k], j, k, d, f);
-      f.add(above_ * frame_.facet().a_contra(j, k), d.form(NearForm::bend, k));
-    }
+    const Padded dual = dual_[j];
+    const Flat k{-beside_[0], -beside_[1]};
+    Flat by_xi = stretch(k, j);
+    by_xi[j] -= 1.0;
+    d.put(NearForm::beside, j, {{dual, -dual, k[0] * dual, k[1] * dual}}, by_xi);  // d c^j
+    for (std::size_t m = 0; m < 2; ++m)
+      d.form(NearForm::beside, j)
+          .add(above_ * frame_.facet().a_contra(j, m), d.form(NearForm::bend, m));
     d.direction(1 + j, NearForm::beside, j) = -friction_;
   }
 

@@ -57,8 +57,9 @@ constexpr auto total(std::integral_constant<std::size_t, N>,
 }
 constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
 
-/// Begins with a line of the cache, so that wide registers do not read across two of them.
-struct alignas(64) Row : std::array<double, 3 * 2 * most_nodes> {};
+/// Begins with a line of the cache, so that wide registers do not read across two of them. The last
+/// number is the zero behind a vector.
+struct alignas(64) Row : std::array<double, 3 * 2 * most_nodes + 1> {};
 using Rows = std::array<Row, 3>;
 /// One number for each node of a facet.
 struct alignas(64) NodeRow : std::array<double, most_nodes> {};
@@ -173,17 +174,11 @@ class Columns {
     }
   }
 
-  /// Writes a form by the nodes that some inputs follow: component by component, then side by side.
+  /// Writes a form by the nodes that some inputs follow, and a zero behind the last one.
   template <std::size_t... I, class Nodes, class By>
   ANISOCONTACT_INLINE void spread(Nodes nodes, const By& by, Inputs<I...>,
                                   double* to) const noexcept {
-    std::array<NodeRow, 3> apart;
-    each<3>([&](std::size_t c) ANISOCONTACT_INLINE_LAMBDA {
-      combine<true, sizeof...(I)>(nodes, {part(by[I], c)...}, {shapes_[I].data()...},
-                                  apart[c].data());
-    });
-    for (std::size_t a = 0; a < nodes; ++a)
-      for (std::size_t c = 0; c < 3; ++c) to[3 * a + c] = apart[c][a];
+    for (std::size_t a = 0; a < nodes; ++a) (... + (shapes_[I][a] * by[I])).to(to + 3 * a);
   }
 
   /// Change of the area with the nodes of the slave.
@@ -192,7 +187,7 @@ class Columns {
     const std::size_t own = s_.area.current ? entries(slaves) : 0;
     std::fill_n(growth_.data() + own, length - own, 0.0);
     if (!s_.area.current) return;
-    std::array<Vec3<double>, inputs> by;
+    std::array<Padded, inputs> by;
     by[slave_input(0)] = s_.area.weight * s_.area.tangents[1].cross(cross_);
     by[slave_input(1)] = s_.area.weight * cross_.cross(s_.area.tangents[0]);
     spread(slaves, by, Inputs<7, 8>{}, growth_.data());

@@ -79,12 +79,12 @@ class FacetFrame {
   /// Writes d xi, dg and nu_a.
   void follow(PairSlopes& d) const noexcept {
     d.interior = interior_;
+    const Padded r0 = plane.r[0], r1 = plane.r[1], apart = plane.apart, n = plane.n;
     for (std::size_t i = 0; i < 2; ++i) {
-      const Vec3<double> q = w_(i, 0) * plane.r[0] + w_(i, 1) * plane.r[1];
-      d.form(NearForm::xi, i).by = {q, -q, w_(i, 0) * plane.apart, w_(i, 1) * plane.apart};
+      const Padded q = w_(i, 0) * r0 + w_(i, 1) * r1;
+      d.form(NearForm::xi, i).by = {q, -q, w_(i, 0) * apart, w_(i, 1) * apart};
     }
-    const Vec3<double> zero = Vec3<double>::Zero();
-    d.form(NearForm::gap).by = {plane.n, -plane.n, zero, zero};
+    d.form(NearForm::gap).by = {n, -n, {}, {}};
     for (std::size_t a = 0; a < 2; ++a) turn(plane.t[a], a, d);
   }
 
@@ -103,19 +103,16 @@ class FacetFrame {
   /// nu = - (t . rho^j) (n . drho_j + h_jk d xi^k) inside a facet; where n is along x - rho,
   /// nu = t . (dx - drho - rho_j d xi^j) / ((x - rho) . n).
   void turn(const Vec3<double>& t, std::size_t a, PairSlopes& d) const noexcept {
-    Near& f = d.form(NearForm::turn, a);
-    f.clear();
     if (interior_) {
-      for (std::size_t j = 0; j < 2; ++j) {
-        const double c = -t.dot(facet_.dual_basis(j));
-        f.by[tangent_input(j)] += c * plane.n;
-        for (std::size_t i = 0; i < 2; ++i) f.add(c * h_(j, i), d.form(NearForm::xi, i));
-      }
+      const Flat c{-t.dot(facet_.dual_basis(0)), -t.dot(facet_.dual_basis(1))};
+      const Padded n = plane.n;
+      d.put(NearForm::turn, a, {{{}, {}, c[0] * n, c[1] * n}},
+            {c[0] * h_(0, 0) + c[1] * h_(1, 0), c[0] * h_(0, 1) + c[1] * h_(1, 1)});
       return;
     }
-    f.by[index(Input::slave)] = turn_ * t;
-    f.by[index(Input::position)] = -turn_ * t;
-    for (std::size_t i = 0; i < 2; ++i) f.add(-turn_ * t.dot(plane.r[i]), d.form(NearForm::xi, i));
+    const Padded along = turn_ * t;
+    d.put(NearForm::turn, a, {{along, -along, {}, {}}},
+          {-turn_ * t.dot(plane.r[0]), -turn_ * t.dot(plane.r[1])});
   }
 
   const surface::Jet<double>& jet_;

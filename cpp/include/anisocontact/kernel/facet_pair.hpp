@@ -106,8 +106,11 @@ inline void put_slopes(const InterfaceLaw& law, FacetFrame& frame, const PairPoi
   const ContactPlane& plane = frame.plane;
   frame.follow(p);
   frame.follow(d);
-  put_friction_forms(law, r, axes, plane, committed, d.friction);
-  for (Form& f : d.friction) frame.expand(f, d);
+  // summed here: a compiler that cannot tell what a reference is to reads all again after each sum
+  std::array<Form, 2> friction;
+  put_friction_forms(law, r, axes, plane, committed, friction);
+  for (Form& f : friction) frame.expand(f, d);
+  d.friction = friction;
   d.along_friction[0] = plane.t;
   d.direction(0, NearForm::gap) = pressure.d[0] * plane.n;
   for (std::size_t a = 0; a < 2; ++a)

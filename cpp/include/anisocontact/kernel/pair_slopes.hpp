@@ -8,11 +8,10 @@ namespace anisocontact::kernel {
 /// A linear form in the slave point, and in position and tangents of the master: the first inputs.
 struct Near {
   static constexpr std::size_t inputs = 4;
-  std::array<Vec3<double>, inputs> by;
+  std::array<Padded, inputs> by;
 
-  void clear() { by.fill(Vec3<double>::Zero()); }
   void add(double k, const Near& f) {
-    for (std::size_t i = 0; i < inputs; ++i) by[i] += k * f.by[i];
+    for (std::size_t i = 0; i < inputs; ++i) by[i].add(k, f.by[i]);
   }
 };
 
@@ -35,6 +34,13 @@ struct PairSlopes {
   Vec3<double>& direction(std::size_t acts, NearForm f, std::size_t k = 0) {
     return along[acts][static_cast<std::size_t>(f) + k];
   }
+  /// Writes a form: what it has of the inputs, and through the coordinates of the projection.
+  void put(NearForm f, std::size_t k, const std::array<Padded, Near::inputs>& direct,
+           const std::array<double, 2>& by_xi) {
+    Near& to = form(f, k);
+    for (std::size_t i = 0; i < Near::inputs; ++i)
+      to.by[i] = direct[i] + by_xi[0] * near[0].by[i] + by_xi[1] * near[1].by[i];
+  }
   /// |dt/dx|, of the traction by the slave point.
   double size() const {
     constexpr std::size_t x = 0, gap = static_cast<std::size_t>(NearForm::gap);
@@ -43,10 +49,10 @@ struct PairSlopes {
     double squares = 0.0;
     each<3>([&](auto i) ANISOCONTACT_INLINE_LAMBDA {
       const auto k = static_cast<Eigen::Index>(i);
-      const Vec3<double> row = t[0][k] * friction[0].by[x] + t[1][k] * friction[1].by[x] +
-                               u[gap][k] * near[gap].by[x] + u[gap + 1][k] * near[gap + 1].by[x] +
-                               u[gap + 2][k] * near[gap + 2].by[x];
-      squares += row.squaredNorm();
+      const Padded row = t[0][k] * friction[0].by[x] + t[1][k] * friction[1].by[x] +
+                         u[gap][k] * near[gap].by[x] + u[gap + 1][k] * near[gap + 1].by[x] +
+                         u[gap + 2][k] * near[gap + 2].by[x];
+      squares += row.vector().squaredNorm();
     });
     return std::sqrt(squares);
   }

@@ -75,7 +75,7 @@ inline Vec3<double> expanded(const Form& f, const ContactPlane& p,
                              const surface::Geometry<double>& here,
                              const std::array<Vec3<double>, 2>& dxi) {
   const Covector<double> turn = here.project_co(p.spatial(f.turn));
-  Vec3<double> d = f.by[index(Input::slave)];
+  Vec3<double> d = f.by[index(Input::slave)].vector();
   for (std::size_t j = 0; j < 2; ++j)
     d += (f.xi[j] - here.h_mixed(0, j) * turn[0] - here.h_mixed(1, j) * turn[1]) * dxi[j];
   return d;
@@ -89,7 +89,7 @@ inline void put_tangent(const std::array<Form, 3>& forms, const ContactPlane& pl
     const Vec3<double>& direction = i < 2 ? plane.t[i] : plane.n;
     out.tangent += direction * expanded(forms[i], plane, here, dxi).transpose();
     for (std::size_t j = 0; j < 2; ++j)
-      out.d_slave_tangents[j] += direction * forms[i].by[slave_input(j)].transpose();
+      out.d_slave_tangents[j] += direction * forms[i].by[slave_input(j)].vector().transpose();
   }
 }
 
