@@ -54,7 +54,8 @@ def contact(
     law = law_file.contact_law(section, place, auto, given)
     required = section.method == AUGMENTED or section.asks_for_multipliers
     section = chosen(section, model, bodies, law)
-    augmentation = _augmentation(section, required)
+    with within(place):
+        augmentation = _augmentation(section, required)
     if section.meshed:
         made = _made(section, model, section.master, law, place, augmentation)
     else:

@@ -97,6 +97,7 @@ class Pass:
         self._dissipated: Floats = np.zeros((len(self.state), len(_DISSIPATED)))
         self.trials = Trials(points, master, law, self.state, self._comm)
         check_start(self, points.size)
+        self._augmentation = augmentation
         if augmentation is not None:
             self.trials.augment(augmentation, points.size)
         self._begin()
@@ -151,6 +152,14 @@ class Pass:
         self.master_yields = self.master.yields(diagonal)
         self.trials.suit(self.body_stiffness)
         self._begin()
+
+    def given_stiffnesses(self) -> dict[str, float]:
+        """Those that hold, which multipliers do not choose, by name, stress/length."""
+        normal, tangential = self.interface.penalties()
+        found = {} if self._augmentation else {"normal.penalty": normal}
+        if not (self._augmentation and self._augmentation.tangential):
+            found["adhesion.stiffness"] = tangential
+        return found
 
     def take_supports(self, fixed: Flags, resting: Sequence[Resting]) -> None:
         """Learn which displacements are prescribed from now on.

@@ -110,8 +110,9 @@ class Uzawa(Multipliers):
         if largest <= self._limit and changed <= SHARE * carried:
             return True
         self._count(largest)
-        typical = carried / np.sqrt(self._comm.allreduce(float(step.areas.sum())))
-        self._raise(largest * max(self._penalties) * self.factor, float(typical))
+        # an iterate far off may have squeezed all facets flat
+        area = max(self._comm.allreduce(float(step.areas.sum())), np.finfo(np.float64).tiny)
+        self._raise(largest * max(self._penalties) * self.factor, float(carried / np.sqrt(area)))
         return False
 
     def _count(self, violation: float) -> None:

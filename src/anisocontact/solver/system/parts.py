@@ -16,6 +16,7 @@ from anisocontact.contact.shared_nodes import mark_shared
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.rounding import check_rounding
 from anisocontact.solver.system.sides_kept import SidesKept
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.attachments import Attachments
@@ -148,12 +149,17 @@ def _guides(
 
 
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
-    """Tell contacts how stiff their bodies are, which are at finite strain, and what they share."""
+    """Tell contacts how stiff their bodies are, which are at finite strain, and what they share.
+
+    Raises:
+        InputError: As of `check_rounding`.
+    """
     mark_shared(contacts)
     diagonal = bodies.unknowns.own_nodal(np.array(bodies.bulk.yielding.array_r))
     for contact, is_finite in zip(contacts, finite, strict=True):
         contact.suit_strain(is_finite)
         contact.suit(diagonal)
+        check_rounding(contact)
 
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:
