@@ -8,8 +8,7 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.base.petsc_calls import check_memory
+from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.front import Sparse
@@ -19,6 +18,7 @@ from anisocontact.solver.strategies.condensed.once import once
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.strategies.condensed.trust import Trust
 from anisocontact.solver.strategies.condensed.wear import Wear
+from anisocontact.solver.strategies.condensed.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
@@ -51,7 +51,6 @@ class LaggedFactor:
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
 
     Attributes:
-        factors: Factorisations so far.
         krylov: Krylov iterations of every correction so far.
     """
 
@@ -67,7 +66,7 @@ class LaggedFactor:
         self._wear, self._trust = Wear(_LAST, _MARGIN), Trust()
         #: Costs in solutions: of this correction so far, and of the last one with a new factor.
         self._spent = self._with_new = 0.0
-        self.factors = 0
+        self._interiors, self._whole = 0, WholeLU()
         self.krylov: list[int] = []
         if kept and f"{_MATRIX}.data" in kept:
             self._restore(kept)
@@ -125,11 +124,13 @@ class LaggedFactor:
         untried = self._trust.skips()
         if untried and self._with_new > self._whole_cost:
             self._due = True
-            return self._whole(tangent, b)
+            return self._whole.solve(tangent, b)
+        if not untried:
+            self._whole.close()
         found = self._with_kept(tangent, b, rtol, untried)
         if not untried:
             self._trust.add(self._spent, self._whole_cost)
-        return self._whole(tangent, b) if found is None else found
+        return self._whole.solve(tangent, b) if found is None else found
 
     def _with_kept(self, tangent: Mat, b: Floats, rtol: float, anew: bool) -> Floats | None:
         """A correction with a factor that is kept, or that is from now on; None where none leads.
@@ -151,6 +152,15 @@ class LaggedFactor:
 
     def close(self) -> None:
         """Give back the memory."""
+        self._whole.close()
+        self._drop()
+
+    @property
+    def factors(self) -> int:
+        """Factorisations so far."""
+        return self._interiors + self._whole.made
+
+    def _drop(self) -> None:
         if self._factor is not None:
             self._factor.close()
         self._factor = None
@@ -164,24 +174,6 @@ class LaggedFactor:
         if self._factor is None:
             return 0.0
         return (2.0 if self._single else 1.0) * self._factor.solutions_per_factor + 1.0
-
-    def _whole(self, tangent: Mat, b: Floats) -> Floats | None:
-        """The correction by a factorisation of all unknowns; None where the tangent is singular."""
-        given, found = tangent.createVecs()
-        given.array[:] = b
-        factor = PETSc.KSP().create(tangent.getComm())
-        factor.setOperators(tangent)
-        factor.setType(PETSc.KSP.Type.PREONLY)
-        factor.getPC().setType(PETSc.PC.Type.LU)
-        factor.getPC().setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
-        factor.solve(given, found)
-        failed = factor.getConvergedReason() < 0
-        if failed:
-            check_memory(factor.getPC())
-        factor.destroy()
-        self.factors += 1
-        solution = np.array(found.array_r)
-        return None if failed or not np.isfinite(solution).all() else solution
 
     def _corrected(self, tangent: Mat, b: Floats, rtol: float, fresh: bool) -> tuple[Floats, float]:
         """What Krylov iterations find, and the norm of its residual over that of `b`."""
@@ -238,21 +230,21 @@ class LaggedFactor:
         """Make a factor of this tangent; the old one stays where there is none."""
         touched, before = Touched(self._problem), self._of_factor
         starts, columns, values = tangent.getValuesCSR()
-        whole = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
-        self._of_factor = touched.without(whole)
+        given = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
+        self._of_factor = touched.without(given)
         try:
             factor = self._retaken(touched.unknowns, before) or self._made(touched.unknowns)
         except SingularError:
             self._of_factor = before
             return False
         if factor is not self._factor:
-            self.close()
+            self._drop()
         rows = self._problem.bulk.volume_rows()
         if rows is not None:
             self._slope = rows.slope
         self._factor, self._touched = factor, touched
         self._due = False
-        self.factors += 1
+        self._interiors += 1
         self._note(
             f"condensing {tangent.getSize()[0]} unknowns on {len(touched.unknowns)} that contact "
             f"can couple, in {'single' if self._single else 'double'} precision (MUMPS)"
