@@ -173,7 +173,8 @@ class Evaluation:
         found = found_on_all(self.sides.comm, law, state, dt, batch, of)
         lost = hit.status == FACET_STATUS.index("failed")
         response = response_of(found, lost)
-        snapshot = Snapshot(slave.positions(self.now), found["area"], response)
+        x = slave.positions(self.now)
+        snapshot = Snapshot(x, found["area"], response, acting=x)
         own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
         forces: Forces
         if self.by_points:
