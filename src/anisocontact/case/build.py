@@ -23,6 +23,7 @@ from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
 from anisocontact.case.model import MORTAR, Case, StepSection
 from anisocontact.case.petsc_options import check_options
+from anisocontact.case.quantity import AUTO
 from anisocontact.case.read import CaseFile, load
 from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
@@ -50,6 +51,20 @@ from anisocontact.solver import (
 
 #: Supports and loads that points and edges have as well as facet groups.
 ON_NODES = ("displacement", "cylindrical", "rotation", "force")
+
+
+def _at_points(case: Case, problem: Problem) -> Iterator[str]:
+    """Contacts that "auto" has put at integration points as there are several processes."""
+    count = problem.comm.size
+    if count == 1 or problem.model.idealisation.dim == 3:
+        return
+    for i, section in enumerate(case.contact):
+        if section.pass_ == AUTO and section.degree is None:
+            yield (
+                f"contact[{i}].pass: in two dimensions on {count} processes it is at integration "
+                "points, on one at the slave nodes: forces differ, and a run of one process cannot "
+                'go on; run on one, or name pass = "single"'
+            )
 
 
 @dataclass(frozen=True)
@@ -83,6 +98,7 @@ class Built:
         high = np.max(self.problem.comm.allgather(high), axis=0)
         found = doubts(case.units, young, densities, float((high - low).max()))
         found += _untimed(case)
+        found += _at_points(case, self.problem)
         return found + [
             f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'
             for i, section in enumerate(case.contact)
