@@ -11,7 +11,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import dolfinx, fem, ufl
-from anisocontact.mesh import GmshFile, Placement, Rotation, build_mesh
+from anisocontact.mesh import GmshFile, Placement, PlaneStrain, Rotation, build_mesh
 from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.readers import file_arrays
 
@@ -385,3 +385,26 @@ displacement = {{ "cube.{upper}" = {{ x = 0.01, y = 0, z = -0.01 }} }}
         ((force, _),) = end.resultants.values()
         forces.append(force)
     assert forces[0] == pytest.approx(forces[1], rel=1e-9)
+
+
+PLATES = """\
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 2., 0.
+6, 1., 2., 0.
+7, 1., 3., 0.
+8, 0., 3., 0.
+*ELEMENT, TYPE=CPE4, ELSET=Lower
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPE4, ELSET=Upper
+2, 5, 6, 7, 8
+"""
+
+
+def test_sets_of_a_plane_are_bodies_where_there_is_no_section(tmp_path):
+    """Requirement: sets that have every element once are bodies in the plane as in space."""
+    model = build_mesh([GmshFile(written(tmp_path, PLATES))], idealisation=PlaneStrain())
+    assert list(model.body_names()) == ["lower", "upper"]

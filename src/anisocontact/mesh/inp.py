@@ -182,8 +182,13 @@ def bodies_of(deck: Deck) -> dict[int, str]:
 
 
 def _apart(deck: Deck) -> dict[str, SolidSection]:
-    """Sets that have every solid once and share no node: bodies where there are no sections."""
-    solids = {number for number, (kind, _) in deck.elements.items() if kind in SOLIDS}
+    """Sets that have every solid once and share no node: bodies where there are no sections.
+
+    Where there are no solids it is the elements of a mesh in the plane.
+    """
+    kinds = {number: kind for number, (kind, _) in deck.elements.items()}
+    solids = {number for number, kind in kinds.items() if kind in SOLIDS}
+    solids = solids or {number for number, kind in kinds.items() if kind in PLANE}
     left, found = set(solids), []
     taken: set[int] = set()
     for name, members in reversed(deck.element_sets.items()):
