@@ -28,6 +28,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.stepping.attempts import Attempts, _Way
 from anisocontact.solver.strategies.condensed import bordered, interior, lagged, lagged_newton
 from anisocontact.solver.strategies.condensed.factor import singular
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
@@ -266,6 +267,21 @@ def test_volume_that_is_kept_wears_no_factor(nu: float) -> None:
     assert factor.factors == 1
     assert factor.krylov[-1] <= 12
     factor.close()
+
+
+@pytest.mark.parametrize(("material", "count"), [(RUBBER, 2), (HARDLY_COMPRESSIBLE, 1)])
+def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
+    """Where pressures follow there is no line search: the second attempt would be the first.
+
+    Requirement: from an accepted state, with nothing extrapolated, the ways to go differ.
+    """
+    problem = _pair(material=material)
+    newton: Any = None
+    attempts = Attempts(problem, newton, newton, newton)
+    x = problem.accepted()
+    searching, full = _Way(x, full_steps=False), _Way(x)
+    assert len(attempts._ways(searching, full, False)) == count
+    assert len(attempts._ways(replace(searching, ratio=1.0), full, False)) == 2
 
 
 def test_a_factor_that_is_made_again_goes_on_as_the_first_one() -> None:

@@ -84,7 +84,8 @@ class Attempts:
     """Solves for given loads and commits what converges.
 
     The first attempt starts from the extrapolated state with a line search, the last one from the
-    accepted state with full steps: a line search stops in front of a jump of the law. Where
+    accepted state with full steps: a line search stops in front of a jump of the law. Both are one
+    where nothing is extrapolated and pressures of cells follow corrections in full steps. Where
     adhesion is stiff one with compliant layers comes between them, see `Continuation`. Where the
     status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
@@ -168,6 +169,10 @@ class Attempts:
             ways = _following(searching, full, cycles, trusts, softer)
         else:
             ways = [searching, searching, full] if trusts else [searching, full]
+            if not searching.ratio and self._problem.in_full and not self._continuation.stiff():
+                ways.remove(
+                    searching
+                )  # neither extrapolated nor with a line search: it is the last
         if self._continuation.stiff():
             ways.insert(2 if trusts else 1, replace(full, layered=True))
         return ways

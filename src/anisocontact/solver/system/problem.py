@@ -267,6 +267,11 @@ class Problem(ReportedSystem):
         self.balance = self.assembly.balance(self._bodies.take(x))
         return self.balance.residual
 
+    @property
+    def in_full(self) -> bool:
+        """Whether corrections are taken in full, without a line search, see `corrected`."""
+        return bool(self.assembly.bodies.bulk.follow(None))
+
     @override
     def corrected(self) -> AbstractContextManager[bool]:
         return self.assembly.bodies.followed(self._bodies.nodal)
