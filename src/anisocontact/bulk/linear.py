@@ -133,6 +133,11 @@ class LinearBulk:
         add_matrix(out, self.stiffness)
         out.assemble()
 
+    @property
+    def volume(self) -> CellPressures | None:
+        """Changes of volume that are kept apart; None where there are none."""
+        return self._pressures if self._pressures.of else None
+
     def volume_rows(self) -> VolumeRows | None:
         """As of `CellPressures.rows`."""
         return self._pressures.rows()

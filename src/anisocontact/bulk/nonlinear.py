@@ -174,6 +174,11 @@ class NonlinearBulk:
                 self._tangent.write(out)
         self._pressures.add_tangent(out, again=again)
 
+    @property
+    def volume(self) -> CellPressures | None:
+        """Changes of volume that are kept apart; None where there are none."""
+        return self._pressures if self._pressures.of else None
+
     def volume_rows(self) -> VolumeRows | None:
         """As of `CellPressures.rows`."""
         return self._pressures.rows()

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -94,6 +95,7 @@ class CellPressures:
         of: The pressure of each of these bodies by name, a DOLFINx function.
         follow: Whether tangents are to have the pressures that corrections lead to.
         hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
+        hardnesses: The same of every pressure this rank owns, the mean of its nodes, (pressures,).
     """
 
     def __init__(
@@ -111,8 +113,10 @@ class CellPressures:
         q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
         weight, self.of = model.idealisation.weight(model.mesh), {}
         self.follow, self.hardness = False, 0.0
+        self.hardnesses: Floats = np.zeros(0)
         self._from: tuple[Vec, Floats] | None = None
-        mass, change, self._work = 0, 0, 0
+        self._in_tangent: Floats | None = None
+        mass, change, extent, self._work = 0, 0, 0, 0
         for i, name in enumerate(model.body_names()):
             here = dx(i, degree=2 * model.order)
             volume = volume_of(laws[name], u) if name in laws else None
@@ -125,9 +129,11 @@ class CellPressures:
             size, e = weight * stretch**3, ideal.seen(volume.change(ufl.grad(u)), u)
             mass += size / volume.bulk * q * p * here
             change += size * q * e * here
+            extent += size * q * here
             self._work += size * pressure * e * here
         if not self.of:
             return
+        self._extent_form = extent
         self._change = compiled(change, comm)
         self._slope_form = compiled(ufl.derivative(change, u), comm)
         self._slope = create_stiffness(self._slope_form)
@@ -165,6 +171,19 @@ class CellPressures:
         by_block = 0.5 * (change * (self._blocks @ change)).sum(axis=(1, 2))
         rows = self._pressure.function_space.dofmap.list[:count, 0] // self._width
         return np.asarray(by_block[rows])
+
+    @cached_property
+    def _extents(self) -> Floats:
+        """Volume of every cell of this rank whose volume is kept apart, (cells,)."""
+        form = compiled(self._extent_form, self._pressure.function_space.mesh.comm)
+        return np.asarray(self._of_this_rank(form).sum(axis=(1, 2)))
+
+    def strains(self) -> Floats:
+        """Mean change of volume, over volume, of the pressures in tangents, (pressures,)."""
+        change = self._changes() if self._in_tangent is None else self._in_tangent
+        sums, extents = np.abs(change.sum(axis=(1, 2))), self._extents
+        by_cell = np.divide(sums, extents, out=np.zeros_like(sums), where=extents > 0.0)
+        return np.repeat(by_cell, self._width)
 
     def add_tangent(self, out: Mat, *, again: bool = False) -> None:
         """Add what the pressures change by to a matrix: `K <P de, P de>`; collective.
@@ -210,9 +229,34 @@ class CellPressures:
         shape = np.maximum(rest, np.finfo(np.float64).eps * held)
         hardest = float((held[held > 0.0] / shape[held > 0.0]).max(initial=0.0))
         self.hardness = max(self._pressure.function_space.mesh.comm.allgather(hardest))
+        ratios = np.divide(held, shape, out=np.zeros_like(held), where=held > 0.0)
+        self.hardnesses = self._mean_of_nodes(ratios)
         self.follow = self.hardness > FOLLOW
         found.array[:] -= np.maximum(held - MOST * rest, 0.0)
         return found
+
+    @property
+    def slope(self) -> Mat:
+        """B of what `add_tangent` has added last: derivatives of `<q, e>` by displacements."""
+        return self._slope
+
+    def stiffened(self, change: Floats) -> Floats:
+        """Pressures of this rank for changes of volume `<q, e>`, `C^-1 e`, (pressures,)."""
+        return np.asarray((self._blocks @ change.reshape(-1, self._width, 1)).reshape(-1))
+
+    def stiffness_beyond(self, kept: Floats) -> Mat:
+        """What `add_tangent` has added last beyond a share of it; collective.
+
+        Args:
+            kept: Share of each pressure that this rank owns, (pressures,).
+
+        Returns:
+            `B^T (1 - kept) C^-1 B`, a new matrix.
+        """
+        beyond, factors = self._inverse.copy(), self._inverse.createVecLeft()
+        factors.array[:] = 1.0 - kept
+        beyond.diagonalScale(L=factors)
+        return beyond.ptap(self._slope)
 
     def follow_from(self, begin: bool) -> None:
         """Let tangents have pressures that corrections from here on lead to, or those of now."""
@@ -225,22 +269,41 @@ class CellPressures:
     def predicted(self) -> Iterator[None]:
         """The pressures that the last correction has led to, if they follow; collective."""
         if self._from is None:
+            self._in_tangent = None
             yield
             return
         u, change = self._from
         now = self._pressure.x.array.copy()
         more = self._slope.createVecLeft()
         self._slope.mult(self._u.x.petsc_vec - u, more)
-        self._take(change + more.array_r.reshape(change.shape))
+        self._in_tangent = change + more.array_r.reshape(change.shape)
+        self._take(self._in_tangent)
         yield
         self._pressure.x.array[:] = now
 
+    def _mean_of_nodes(self, values: Floats) -> Floats:
+        """Mean of values of displacements over those that change a volume, by how much they do."""
+        weights = self._slope.copy()
+        starts, columns, slopes = weights.getValuesCSR()
+        weights.setValuesCSR(starts, columns, slopes**2)
+        weights.assemble()
+        given, found = weights.createVecs()
+        given.array[:] = values
+        weights.mult(given, found)
+        sums: Floats = np.array(found.array_r)
+        given.set(1.0)
+        weights.mult(given, found)
+        total: Floats = found.array_r
+        return np.divide(sums, total, out=np.zeros_like(sums), where=total > 0.0)
+
     def _changes(self) -> Floats:
         """`<q, e>` of the cells of this rank, (cells, pressures of a cell, 1)."""
+        return self._of_this_rank(self._change)
+
+    def _of_this_rank(self, form: Any) -> Floats:
+        """A linear form of the pressures of this rank, (cells, pressures of a cell, 1)."""
         owned = self._pressure.x.index_map.size_local
-        return np.asarray(fem.assemble_vector(self._change).array[:owned]).reshape(
-            -1, self._width, 1
-        )
+        return np.asarray(fem.assemble_vector(form).array[:owned]).reshape(-1, self._width, 1)
 
     def _take(self, change: Floats) -> None:
         """Pressures of changes of volume, see `_changes`."""

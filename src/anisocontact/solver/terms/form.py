@@ -48,7 +48,7 @@ class FormBulk:
     #: Pressures are among the unknowns of the form.
     pressures: Mapping[str, Any] = MappingProxyType({})
     #: No volume is kept by pressures that are not.
-    hardness = 0.0
+    hardness, volume = 0.0, None
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space

@@ -14,11 +14,11 @@ from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
-from anisocontact.solver.strategies.condensed.once import once
 from anisocontact.solver.strategies.condensed.touched import Touched
-from anisocontact.solver.strategies.condensed.trust import Trust
 from anisocontact.solver.strategies.condensed.wear import Wear
-from anisocontact.solver.strategies.condensed.whole import WholeLU
+from anisocontact.solver.strategies.once import once
+from anisocontact.solver.strategies.trust import Trust
+from anisocontact.solver.strategies.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError

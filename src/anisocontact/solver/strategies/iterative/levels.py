@@ -54,6 +54,7 @@ class Levels:
         self, problem: Problem, patch: Patch, prefix: str, note: Callable[[str], None]
     ) -> None:
         self._problem, self._patch, self._prefix, self._note = problem, patch, prefix, note
+        self._tangent: Mat | None = None
         self._split: UnknownSplit | None = None
         self._interior: Mat | None = None
         self._smoother: Smoother | None = None
@@ -87,11 +88,20 @@ class Levels:
         return ""
 
     def setUp(self, pc: PETSc.PC) -> None:
-        """Take the tangent that the linear solver has been given."""
+        """Take the tangent that the linear solver has been given, for PETSc."""
         tangent, _ = pc.getOperators()
+        if not self.take(tangent):
+            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
+
+    def apply(self, _: PETSc.PC, b: Vec, x: Vec) -> None:
+        """One cycle from zero, or a solution with the factor, for PETSc."""
+        self.solve(b, x)
+
+    def take(self, tangent: Mat) -> bool:
+        """Take a tangent; whether its last level could be factorised."""
+        self._tangent = tangent
         if self._whole:
-            self._factorise(pc, tangent)
-            return
+            return self._factorise(tangent)
         # what the tangent without contact depends on, beside the state where bodies are not linear
         bulk = self._problem.stabilisation.stiffnesses
         changed = not self._problem.linear or bulk != self._bulk
@@ -105,18 +115,16 @@ class Levels:
         if self._single and not self._coarse.single:
             self._single = False
             self._note("the factor of the coarse level is in double precision from now on")
-        if not found:
-            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
+        return found
 
-    def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
-        """One cycle from zero, or a solution with the factor."""
+    def solve(self, b: Vec, x: Vec) -> None:
+        """Set x to what one cycle from zero, or the factor, finds for b."""
         if self._factor is not None:
             self._factor.solve(b).copy(x)
             return
-        tangent, _ = pc.getOperators()
         assert self._coarse is not None and self._smoother is not None
+        tangent, rest = self._tangent, self._rest
         x.zeroEntries()
-        rest = self._rest
         b.copy(rest)
         self._solve_given(tangent, b, rest, x)
         cycle(tangent, self._smoother, self._coarse, b, rest, x)
@@ -129,13 +137,12 @@ class Levels:
         self._factor = None
         self._split = self._smoother = self._interior = self._coarse = None
 
-    def _factorise(self, pc: PETSc.PC, tangent: Mat) -> None:
-        """Make a factor of the tangent."""
+    def _factorise(self, tangent: Mat) -> bool:
+        """Make a factor of the tangent; whether there is one."""
         if self._factor is None:
             prefix = f"{self._prefix}coarse_"
             self._factor = Factor(tangent, (), prefix, self._single, self._note)
-        if not self._factor.renew(tangent, grown=True, bodies=True):
-            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
+        return self._factor.renew(tangent, grown=True, bodies=True)
 
     def _outdated(self, bulk_changed: bool) -> bool:
         """Whether the interpolation has to be made anew; the same on all ranks."""

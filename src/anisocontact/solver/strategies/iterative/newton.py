@@ -9,6 +9,7 @@ from typing import override
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.database import OptionValue
 from anisocontact.solver.strategies.iterative.levels import Levels
+from anisocontact.solver.strategies.iterative.mixed import MixedKrylov
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
@@ -26,6 +27,8 @@ DEFAULTS: dict[str, OptionValue] = {
     "smoother_ksp_max_it": 2,
     "smoother_pc_type": "jacobi",
 }
+#: Stiffness against changes of volume over the rest from which on the mixed form is solved.
+MIXED = 2.0
 #: Residual of a correction over that of its start, at most.
 LOOSEST = 1e-4
 #: Share of Newton's tolerance that a last correction may leave.
@@ -67,7 +70,7 @@ class IterativeNewton(Newton):
     ) -> None:
         super().__init__(problem, prefix, DEFAULTS | dict(options), on_iteration)
         self.krylov: list[int] = []
-        self._note = note
+        self._note, self._nodal = note, problem
         self._failures = 0
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
@@ -78,6 +81,8 @@ class IterativeNewton(Newton):
         if ksp.getPC().getType() == PETSc.PC.Type.PYTHON:
             self._levels = Levels(problem, Patch(problem, steps), prefix, note)
             ksp.getPC().setPythonContext(self._levels)
+            if not self._asked:
+                self._solve_mixed(self._levels, prefix)
 
     def solve(
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
@@ -92,6 +97,19 @@ class IterativeNewton(Newton):
                     'if the bodies are held, take the strategy "direct"'
                 )
         return result
+
+    def _solve_mixed(self, levels: Levels, prefix: str) -> None:
+        """Solve for pressures, too, where bodies all but keep their volume."""
+        problem, ksp = self._nodal, self.snes.getKSP()
+        volume = problem.bulk.volume
+        # moments of faces that follow rigid bodies are beyond what pressures are handed to
+        if volume is None or problem.bulk.hardness < MIXED or problem.coupled:
+            return
+        with self._database:
+            mixed = MixedKrylov(problem, volume, levels, prefix, self._note)
+        ksp.setType(PETSc.KSP.Type.PYTHON)
+        ksp.setPythonContext(mixed)
+        ksp.getPC().setType(PETSc.PC.Type.NONE)
 
     def close(self) -> None:
         """Give back PETSc's objects."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from anisocontact.solver.strategies.condensed.trust import Trust
+from anisocontact.solver.strategies.trust import Trust
 
 
 def _skipped(trust: Trust) -> int:

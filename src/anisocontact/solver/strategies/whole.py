@@ -34,8 +34,8 @@ class WholeLU:
         """Factorise a matrix and solve once; None where it is singular.
 
         Args:
-            matrix: The matrix, on one process; one whose pattern is that of before is not analysed.
-            b: Right-hand side, (n,).
+            matrix: The matrix; on one process one whose pattern is that of before is not analysed.
+            b: Right-hand side of the rows of this rank, (n,).
         """
         if self._ksp is None:
             self._ksp = PETSc.KSP().create(matrix.getComm())
@@ -48,11 +48,11 @@ class WholeLU:
         self._ksp.solve(given, found)
         self.made += 1
         failed = self._ksp.getConvergedReason() < 0
-        solution = np.array(found.array_r)
+        whole = np.isfinite(found.norm())
         if failed:
             check_memory(self._ksp.getPC())
             self.close()
-        return None if failed or not np.isfinite(solution).all() else solution
+        return None if failed or not whole else np.array(found.array_r)
 
     def close(self) -> None:
         """Give back the memory; the next matrix is analysed anew."""
