@@ -13,7 +13,7 @@ from anisocontact.solver.terms.persistent import Arrays
 
 #: Stiffness against changes of volume over the rest from which on a factorisation of all unknowns,
 #: if it fits, takes no longer: at nu = 0.499, which is 84 for hexahedra of order 1, Krylov
-#: iterations are up to 46, at 0.4999, 844, up to 105, and some tangents are factorised all the same.
+#: iterations are up to 46, at 0.4999, 844, up to 105, and some tangents are factorised in the end.
 HARDEST = 200.0
 #: Share of the unknowns that may stay on the coarse level, if nobody asks for it.
 MOST_KEPT = 0.25

@@ -10,7 +10,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.solver.strategies.condensed.bordered import reachable
 from anisocontact.solver.strategies.condensed.factor import aij
-from anisocontact.solver.strategies.condensed.whole import WholeLU
+from anisocontact.solver.strategies.whole import WholeLU
 
 pytestmark = pytest.mark.skipif(not reachable(), reason="a PETSc without MUMPS")
 
