@@ -273,6 +273,8 @@ def test_corrupt_mesh(tmp_path, capsys, case_text):
         ("iterative", 'coarse_pc_type = "gmag"', "Unable to find requested PC type gmag"),
         ("iterative", 'smoother_ksp_type = "cheby"', "Unable to find requested KSP type cheby"),
         ("iterative", "smoother_ksp_maxit = 4", "PETSc knows no such option"),
+        ("auto", "snes_atol = -1.0", "solver.options.snes_atol: -1.0 given, must be >= 0"),
+        ("iterative", "ksp_max_it = -5", "solver.options.ksp_max_it: -5 given, must be >= 0"),
         ("iterative", 'aggregates_pc_gamg_threshold = "a"', "has no numeric value"),
         ("auto", 'coarse_pc_precision = "half"', "allowed: single, double"),
     ],
@@ -289,6 +291,7 @@ def test_wrong_petsc_option(tmp_path, capsys, case_text, strategy, option, said)
 def test_monitors_are_switched_on_by_true():
     """Requirement: `true` is the option alone, as on a command line, for monitors as well."""
     check_options({"snes_monitor": True, "ksp_monitor": True, "ksp_max_it": 7}, "direct")
+    check_options({"snes_view": True, "ksp_view": True, "snes_converged_reason": True}, "direct")
 
 
 @pytest.mark.parametrize(

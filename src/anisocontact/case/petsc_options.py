@@ -16,6 +16,10 @@ PARTS = {AUTO: _OF_LEVELS, ITERATIVE: _OF_LEVELS, DIRECT: _OF_PETSC, CONDENSED: 
 #: ... and of those that PETSc reads before it has a matrix of some size.
 _EARLY = ("snes_", "ksp_", "smoother_ksp_", "coarse_ksp_", "aggregates_pc_gamg_")
 _OF_MUMPS = ("mat_mumps_", "coarse_mat_mumps_")
+#: ... and those that it reads when something has been solved.
+_LATE = ("_view", "_converged_reason")
+#: How names of numbers end that must not be negative: PETSc takes those for something else.
+_COUNTED = ("_rtol", "_atol", "_stol", "_max_it")
 _PREFIX = "anisocontact_check_"
 
 
@@ -36,6 +40,9 @@ def check_options(options: Mapping[str, str | int | float | bool], strategy: str
                 f"no part of the solver reads it: names begin with one of {', '.join(parts)}",
                 field=f"solver.options.{name}",
             )
+        value = options[name]
+        if name.endswith(_COUNTED) and isinstance(value, int | float) and not value >= 0.0:
+            raise InputError(f"{value!r} given, must be >= 0", field=f"solver.options.{name}")
     try:
         unread = _unread(options, strategy)
     except PETSc.Error as error:
@@ -86,7 +93,8 @@ def _unread(options: Mapping[str, OptionValue], strategy: str) -> list[str]:
             pc.setFromOptions()
             pc.destroy()
     early = (*_EARLY, *(_OF_MUMPS if mumps else ()))
-    return [name for name in options if name.startswith(early) and name in database.left]
+    asked = (name for name in options if name.startswith(early) and not name.endswith(_LATE))
+    return [name for name in asked if name in database.left]
 
 
 def _by_mumps(ksp: PETSc.KSP, factorises: bool) -> bool:
