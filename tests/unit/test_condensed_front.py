@@ -16,7 +16,9 @@ from anisocontact.solver.strategies.condensed.bordered import reachable as borde
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.front import Front, whole
+from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
+from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 
 
@@ -221,6 +223,32 @@ def test_a_factor_of_other_values_needs_no_other_analysis() -> None:
     assert error(other) < 1e-2 < error(matrix)
     assert analysed.getPerfInfo()["count"] == before
     factor.close()
+
+
+@pytest.mark.skipif(not borders(), reason="PETSc without MUMPS")
+def test_a_factor_that_runs_out_of_workspace_is_analysed_anew(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """MUMPS needs more workspace for other values than it has for the first ones.
+
+    Requirement: it is given more, and what is left on the border is NumPy's to rounding.
+    PETSc factorises no more with an analysis of which a factorisation has failed.
+    """
+    n, border = 300, np.arange(50, 150)
+    matrix = matrix_of(n, 5)
+    matrix.sort_indices()
+    interior = Interior(aij(matrix), border, "", {})
+    monkeypatch.setattr("anisocontact.solver.strategies.condensed.interior.WORKSPACE", (-90, 30))
+    interior.factor.setMumpsIcntl(14, -90)
+    for scale in (1.5, 2.0):
+        matrix.data *= scale
+        assert interior.take(matrix)
+        schur, dense = schur_matrix(interior.factor, 100)[1], matrix.toarray()
+        rest = np.setdiff1d(np.arange(n), border)
+        across = dense[np.ix_(border, rest)] @ np.linalg.inv(dense[np.ix_(rest, rest)])
+        right = dense[np.ix_(border, border)] - across @ dense[np.ix_(rest, border)]
+        np.testing.assert_allclose(schur, right, atol=1e-9 * np.abs(right).max())
+    interior.close()
 
 
 def test_bodies_that_only_springs_hold_are_not_eliminated() -> None:

@@ -12,7 +12,6 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.factor import singular
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.mumps import (
-    ICNTL_WORKSPACE,
     TOO_SMALL,
     WORKSPACE,
     partial_factor,
@@ -42,13 +41,9 @@ class Interior:
     def __init__(
         self, matrix: Mat, border: Ints, prefix: str, options: Mapping[str, OptionValue]
     ) -> None:
-        self._matrix = matrix
-        for extra in WORKSPACE:
-            with Database(prefix, options):
-                self._pc, self.factor = partial_factor(matrix, border, extra, prefix)
-            if self.factor.getMumpsInfog(1) not in TOO_SMALL:
-                break
-            self._pc.destroy()
+        self._matrix, self._border = matrix, border
+        self._prefix, self._options = prefix, options
+        self._analyse()
         try:
             self._check()
         except SingularError:
@@ -71,13 +66,15 @@ class Interior:
         same = np.array_equal(starts, matrix.indptr) and np.array_equal(columns, matrix.indices)
         if not same:
             return False
-        for extra in WORKSPACE:
-            self.factor.setMumpsIcntl(ICNTL_WORKSPACE, extra)
-            self._matrix.setValuesCSR(starts, columns, matrix.data)
-            self._matrix.assemble()
+        self._matrix.setValuesCSR(starts, columns, matrix.data)
+        self._matrix.assemble()
+        failed = self.factor.getMumpsInfog(1) < 0
+        if not failed:
             self._pc.setUp()
-            if self.factor.getMumpsInfog(1) not in TOO_SMALL:
-                break
+        # after a failure PETSc leaves out all factorisations that go by the same analysis
+        if failed or self.factor.getMumpsInfog(1) in TOO_SMALL:
+            self._pc.destroy()
+            self._analyse()
         self._check()
         return True
 
@@ -85,6 +82,17 @@ class Interior:
         """Give back the memory."""
         self._pc.destroy()
         self._matrix.destroy()
+
+    def _analyse(self) -> None:
+        """Analyse and factorise the matrix, with more workspace until it is enough."""
+        for extra in WORKSPACE:
+            with Database(self._prefix, self._options):
+                made = partial_factor(self._matrix, self._border, extra, self._prefix)
+            self._pc, self.factor = made
+            if self.factor.getMumpsInfog(1) not in TOO_SMALL:
+                return
+            if extra != WORKSPACE[-1]:
+                self._pc.destroy()
 
     def _check(self) -> None:
         """Look whether there is a factor.

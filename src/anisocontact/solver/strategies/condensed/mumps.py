@@ -23,7 +23,7 @@ from anisocontact.solver.strategies.condensed.factor import (
 #: MUMPS: what a solution does with the Schur complement, and "the interior alone".
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0
 #: MUMPS: workspace beyond what it expects to need, percent: tried one after the other.
-ICNTL_WORKSPACE, WORKSPACE = 14, (30, 200, 1000)
+_ICNTL_WORKSPACE, WORKSPACE = 14, (30, 200, 1000)
 #: MUMPS: whether workspace that a factorisation leaves is given back, and "by a copy".
 _ICNTL_COMPACT, _BY_COPY = 49, 1
 #: MUMPS: whether fronts are cut into blocks that may be of low rank, and "where it is told so".
@@ -134,7 +134,7 @@ def partial_factor(
         PETSc's preconditioner, which owns it, and the factor.
     """
     pc, factor = unfactorised(matrix, border, prefix, kind)
-    factor.setMumpsIcntl(ICNTL_WORKSPACE, extra)
+    factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
     factor.setMumpsIcntl(_ICNTL_COMPACT, _BY_COPY)
     if kind == PETSc.PC.Type.CHOLESKY:
         factor.setMumpsIcntl(_ICNTL_BLOCKED, _BLOCKED)
