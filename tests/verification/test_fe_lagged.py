@@ -281,6 +281,7 @@ def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
     x = problem.accepted()
     searching, full = _Way(x, full_steps=False), _Way(x)
     assert len(attempts._ways(searching, full, False)) == count
+    assert len(attempts._apart(searching, full)) == count  # those with penalties
     assert len(attempts._ways(replace(searching, ratio=1.0), full, False)) == 2
 
 

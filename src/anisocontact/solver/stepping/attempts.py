@@ -137,7 +137,8 @@ class Attempts:
         found: list[Culprit] = []
         seen: set[str] = set()
         searching, full = _Way(first, ratio, full_steps=False), _Way(last)
-        relaxed = [replace(way, multipliers=PENALTIES) for way in (searching, full)]
+        both = self._apart(searching, full)
+        relaxed = [replace(way, multipliers=PENALTIES) for way in both]
         if not (pace.may_relax and PENALTIES in self._problem.contact_term.ways):
             relaxed = []
         ways = self._ways(searching, full, pace.softer)
@@ -168,14 +169,16 @@ class Attempts:
             cycles = IN_CYCLES in self._problem.contact_term.ways
             ways = _following(searching, full, cycles, trusts, softer)
         else:
-            ways = [searching, searching, full] if trusts else [searching, full]
-            if not searching.ratio and self._problem.in_full and not self._continuation.stiff():
-                ways.remove(
-                    searching
-                )  # neither extrapolated nor with a line search: it is the last
+            stiff = self._continuation.stiff()
+            both = [searching, full] if stiff else self._apart(searching, full)
+            ways = [both[0], *both] if trusts else both
         if self._continuation.stiff():
             ways.insert(2 if trusts else 1, replace(full, layered=True))
         return ways
+
+    def _apart(self, searching: _Way, full: _Way) -> list[_Way]:
+        """Both ways; one where there is neither extrapolation nor a line search between them."""
+        return [searching, full] if searching.ratio or not self._problem.in_full else [full]
 
     def _last_resorts(self, failed: _Way, flows: bool) -> list[_Way]:
         """What is left to be tried where the status of points alternates, or parts are tiny."""
