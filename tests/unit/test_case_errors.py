@@ -35,7 +35,7 @@ WRONG = [
     # rounding of positions would be a force: states far from equilibrium would be taken for one
     ("penalty = 1e4", "penalty = 1e18", "contact 'block.bottom on plate'.normal.penalty",
      "1e+18 given, must be at most "),
-    ("[4e3, 1e3]", "[1e18, 1e18]", "contact 'block.bottom on plate'.adhesion.stiffness", "at most"),
+    ("[4e3, 1e3]", "[1e18, 1e3]", "contact 'block.bottom on plate'.adhesion.stiffness", "at most"),
     ("normal = { penalty = 1e4 }", 'method = "augmented"\ntolerance = 2', "contact[0].tolerance",
      "2.0 given, must be > 0 and < 1"),
     ("E = 1000", "E = -1000", "material.block.E", "-1000 given"),
@@ -286,6 +286,16 @@ def test_wrong_petsc_option(tmp_path, capsys, case_text, strategy, option, said)
     (line,) = run_wrong(tmp_path, capsys, text)
     assert line.startswith(f"error: solver.options.{option.split(' ')[0]}: ")
     assert said in line
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["smoother_ksp_chebyshev_esteig", "ksp_fgmres_modifypcnochange", "ksp_gmres_restart"],
+)
+def test_what_parts_of_iterative_read_is_known(name):
+    """Requirement: no option is refused that the Krylov method of a part does read."""
+    values = {"smoother_ksp_chebyshev_esteig": "0,0.1,0,1.1", "ksp_gmres_restart": 20}
+    check_options({name: values.get(name, True)}, "iterative")
 
 
 def test_monitors_are_switched_on_by_true():

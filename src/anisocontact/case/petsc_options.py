@@ -8,6 +8,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.strategies import AUTO, CONDENSED, DIRECT, ITERATIVE
 from anisocontact.solver.strategies.database import Database, OptionValue
+from anisocontact.solver.strategies.iterative.newton import DEFAULTS
 
 _OF_PETSC = ("snes_", "ksp_", "pc_", "mat_", "vec_", "sub_", "mg_", "fieldsplit_")
 _OF_LEVELS = (*_OF_PETSC, "smoother_", "coarse_", "aggregates_")
@@ -74,7 +75,9 @@ def _unread(options: Mapping[str, OptionValue], strategy: str) -> list[str]:
         PETSc.Error: PETSc refuses one.
     """
     levels = strategy in (AUTO, ITERATIVE)
-    database = Database(_PREFIX, options, "solver.options")
+    # what else a Krylov method reads goes by its type
+    types = {n: v for n, v in DEFAULTS.items() if n.endswith("ksp_type")} if levels else {}
+    database = Database(_PREFIX, types | dict(options), "solver.options")
     with database:
         snes = PETSc.SNES().create(PETSc.COMM_SELF)
         snes.setOptionsPrefix(_PREFIX)

@@ -155,10 +155,10 @@ class Pass:
 
     def given_stiffnesses(self) -> dict[str, float]:
         """Those that hold, which multipliers do not choose, by name, stress/length."""
-        normal, tangential = self.interface.penalties()
-        found = {} if self._augmentation else {"normal.penalty": normal}
+        interface = self.interface
+        found = {} if self._augmentation else {"normal.penalty": interface.penalties()[0]}
         if not (self._augmentation and self._augmentation.tangential):
-            found["adhesion.stiffness"] = tangential
+            found["adhesion.stiffness"] = interface.tangential.stiffest()
         return found
 
     def take_supports(self, fixed: Flags, resting: Sequence[Resting]) -> None:

@@ -109,6 +109,10 @@ class AdhesionAndFriction(Remade):
         """Least stiffness of adhesion, stress/length."""
         return min(self.adhesion.named[1].get("stiffness", [1.0]))
 
+    def stiffest(self) -> float:
+        """Largest stiffness of adhesion, stress/length; 0 where it has none."""
+        return max(self.adhesion.named[1].get("stiffness", [0.0]))
+
     def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
         """What the core finds for a batch; arguments as of `PythonLaw.through`."""
         found = update(raw_state(state), None)

@@ -140,6 +140,10 @@ class PythonLaw:
         """The law has none: 1."""
         return 1.0
 
+    def stiffest(self) -> float:
+        """The law has no stiffness that is known: 0."""
+        return 0.0
+
     def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
         """What the core finds for a batch, with the law evaluated in between.
 
