@@ -37,6 +37,7 @@ displacement = { "block.top" = { x = 0, y = -0.01 } }
 """
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize(("count", "given", "told"), [(1, "", 0), (2, "", 1), (2, "single", 0)])
 def test_what_auto_takes_on_several_processes_is_told(
     tmp_path: Path, count: int, given: str, told: int

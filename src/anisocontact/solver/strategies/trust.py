@@ -1,4 +1,4 @@
-"""Whether what an earlier factor saves is still worth its iterations."""
+"""Whether Krylov iterations are still worth what they save of factorisations."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from anisocontact.base.array_types import Ints
 
-#: Corrections in succession that have to be dear before others are found without an old factor, and
-#: the most of those between two tries.
+#: Corrections in succession that have to be dear before others are found without iterations, and the
+#: most of those between two tries.
 _DEAR, _MOST = 2, 16
 
 
 class Trust:
-    """Tells by what corrections have cost whether the next one is tried with an old factor.
+    """Tells by what corrections have cost whether iterations are tried for the next one.
 
-    Where bodies change much between corrections, or a factorisation of all unknowns costs little,
-    iterations with an old factor are lost. After two corrections in succession that have cost more
+    With an old factor they are lost where bodies change much between corrections, or where a
+    factorisation of all unknowns costs little; with levels where they do not converge. After two corrections in succession that have cost more
     than such a factorisation two are found without, then four, and so on; one that costs less ends
     that.
 
@@ -31,13 +31,13 @@ class Trust:
         self._dear = self._left = 0
 
     def skips(self) -> bool:
-        """Whether the next correction is to be found without an old factor; it is counted."""
+        """Whether the next correction is to be found without iterations; it is counted."""
         skipped = self._left > 0
         self._left -= skipped
         return skipped
 
     def add(self, cost: float, whole: float) -> None:
-        """Count a correction that was tried with an old factor.
+        """Count a correction that iterations were tried for.
 
         Args:
             cost: What it has cost, with all factors made for it.
