@@ -80,6 +80,7 @@ def _listed(around: Patches, keys: Ints) -> Locals:
     count = np.diff(around.offsets)
     owner = np.repeat(np.arange(len(count)), count)
     facets = around.facets[np.lexsort((keys[around.facets], owner))]
-    table = np.full((len(count), int(count.max(initial=0)), around.mesh.nodes.shape[1]), -1)
+    most, width = int(count.max(initial=0)), around.mesh.nodes.shape[1]
+    table = np.full((len(count), most, width), -1, dtype=np.int32)
     table[owner, np.arange(len(owner)) - around.offsets[owner]] = around.mesh.nodes[facets]
-    return table.reshape(len(count), -1).astype(np.int32)
+    return table.reshape(len(count), most * width)

@@ -6,8 +6,8 @@ import numpy as np
 
 from anisocontact.base.array_types import Ints
 
-#: Corrections in succession that have to be dear before others are found without iterations, and the
-#: most of those between two tries.
+#: Corrections in succession that have to be dear before others are found without iterations, and
+#: the most of those between two tries.
 _DEAR, _MOST = 2, 16
 
 
@@ -15,9 +15,9 @@ class Trust:
     """Tells by what corrections have cost whether iterations are tried for the next one.
 
     With an old factor they are lost where bodies change much between corrections, or where a
-    factorisation of all unknowns costs little; with levels where they do not converge. After two corrections in succession that have cost more
-    than such a factorisation two are found without, then four, and so on; one that costs less ends
-    that.
+    factorisation of all unknowns costs little; with levels where they do not converge. After two
+    corrections in succession that have cost more than such a factorisation two are found without,
+    then four, and so on; one that costs less ends that.
 
     Example:
         >>> trust = Trust()
