@@ -62,6 +62,8 @@ class OppositeNames:
         beside = (nodes >= 0) & ~self._gathered.has(nodes)
         names = self._gathered.names(np.where(beside, np.int32(-1), nodes))
         row, column = np.nonzero(beside)
+        if not len(row):  # a process without slave nodes has nothing to look in
+            return names
         place = (self._beside[row] == nodes[row, column][:, None]).argmax(axis=1)
         names[row, column] = self._gathered.name_count + place
         return names
