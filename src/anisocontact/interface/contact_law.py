@@ -227,8 +227,11 @@ class ContactLaw(Remade):
         return self.tangential.slip_stiffness(dt)
 
     def penalties(self) -> tuple[float, float]:
-        """Normal penalty and least stiffness of adhesion, stress/length; 1 where it has none."""
-        return self.normal.named[1]["penalty"][0], self.tangential.penalty()
+        """Normal penalty and least stiffness of adhesion, stress/length; 1 where it has none.
+
+        The penalty is 0 of a normal law that has another parameter in its place.
+        """
+        return self.normal.named[1].get("penalty", (0.0,))[0], self.tangential.penalty()
 
 
 class FacetBatch(TypedDict):
