@@ -76,31 +76,24 @@ class MortarWeights {
     for (const auto& m : masters) most = std::max(most, m.size());
     Array<std::int32_t> nodes({n, most}, unset);
     std::fill_n(nodes.data, n * most, -1);
-    Array<double> area({n}), weight({n, most}), away({n, 3});
+    Array<double> area({n}), weight({n, most});
     counts_.resize(n);
-    nodal_ = {most,
-              nodes.data,
-              area.data,
-              weight.data,
-              away.data,
-              counts_.data(),
-              std::vector<std::vector<std::int32_t>>(n)};
+    nodal_ = {most,        nodes.data,     area.data,
+              weight.data, counts_.data(), std::vector<std::vector<std::int32_t>>(n)};
     {
       nb::gil_scoped_release free;
       kernel::parallel_for(n, threads, [&](std::size_t i) {
-        mortar::collect(in_, facets_, patches_, masters[i], i, nodal_);
+        mortar::collect(facets_, patches_, masters[i], i, nodal_);
       });
     }
     masters_ = nodes.array;
     area_ = area.array;
     weight_ = weight.array;
-    away_ = away.array;
   }
 
   const auto& masters() const { return masters_; }
   const auto& area() const { return area_; }
   const auto& weight() const { return weight_; }
-  const auto& away() const { return away_; }
 
   using Part = std::tuple<std::size_t, std::optional<Table>, Cube>;
   nb::tuple tangent(const Indices& which, const Cube& by, const Cube& lift, const Points& traction,
@@ -134,7 +127,7 @@ class MortarWeights {
   std::vector<std::int32_t> counts_;
   mortar::NodalWeights nodal_{};
   nb::ndarray<nb::numpy, std::int32_t> masters_;
-  nb::ndarray<nb::numpy, double> area_, weight_, away_;
+  nb::ndarray<nb::numpy, double> area_, weight_;
 };
 
 /// Derivative of the tractions of some slave nodes, (p, 3, columns, 4), of which the last numbers do not count,
@@ -258,7 +251,6 @@ void bind_mortar(nb::module_& m) {
       .def_prop_ro("masters", &MortarWeights::masters, nb::rv_policy::reference)
       .def_prop_ro("area", &MortarWeights::area, nb::rv_policy::reference)
       .def_prop_ro("weight", &MortarWeights::weight, nb::rv_policy::reference)
-      .def_prop_ro("away", &MortarWeights::away, nb::rv_policy::reference)
       .def("tangent", &MortarWeights::tangent, nb::arg("which"), nb::arg("by"), nb::arg("lift"),
            nb::arg("traction"), nb::arg("moving"), nb::arg("threads"));
 }

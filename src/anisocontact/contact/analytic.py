@@ -148,7 +148,7 @@ class AnalyticMaster(Master):
         x = slave.quadrature.reference + self._way
         laws = self._derivative if derivative else self._laws
         response = laws.update(state, x, dt, slave=turned)
-        snapshot = Snapshot(x, slave.areas(self._there), response, acting=x)
+        snapshot = Snapshot(x, slave.areas(self._there), response)
         return AnalyticAnswer(slave, self._there, turned, self.body, snapshot)
 
     @override

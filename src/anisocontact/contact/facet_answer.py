@@ -173,8 +173,7 @@ class Evaluation:
         found = found_on_all(self.sides.comm, law, state, dt, batch, of)
         lost = hit.status == FACET_STATUS.index("failed")
         response = response_of(found, lost)
-        x = slave.positions(self.now)
-        snapshot = Snapshot(x, found["area"], response, acting=x)
+        snapshot = Snapshot(slave.positions(self.now), found["area"], response)
         own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
         forces: Forces
         if self.by_points:

@@ -102,15 +102,6 @@ def facet_corners(topology: str) -> list[int]:
     return [0, 1, 2] if topology.startswith("tri") else [0, 1, 3, 2]
 
 
-def border_facets(mesh: FacetMesh) -> Flags:
-    """Facets with an edge that no other one has, (m,)."""
-    corners = mesh.nodes[:, facet_corners(mesh.topology)].astype(np.int64)
-    ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2)
-    keys = ends[..., 0] * (int(ends.max(initial=0)) + 1) + ends[..., 1]
-    _, edge, count = np.unique(keys, return_inverse=True, return_counts=True)
-    return np.asarray((count[edge].reshape(keys.shape) == 1).any(axis=1))
-
-
 def group_area(mesh: FacetMesh, x: Floats) -> float:
     """Area of facets from their corners, length^2.
 

@@ -20,14 +20,11 @@ class Snapshot:
         points: Where they are, (n, 3), length.
         areas: Area of each, (n,), length^2.
         response: What the interface answers.
-        acting: Where their forces act, (n, 3), length: beside slave nodes whose facets the master
-            covers in part.
     """
 
     points: Floats
     areas: Floats
     response: Response
-    acting: Floats
 
     @property
     def forces(self) -> Floats:
@@ -42,7 +39,7 @@ class Snapshot:
             traction: On the slave, (n, 3), stress; that of the response if not given.
         """
         forces = self.forces if traction is None else self.areas[:, None] * traction
-        moments = np.cross(self.acting - about, forces)
+        moments = np.cross(self.points - about, forces)
         return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
 
 

@@ -19,7 +19,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.facing import Facing, Pairs
-from anisocontact.contact.line_hand_over import HandOver
 from anisocontact.contact.line_overlap import Number, Overlap
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches
@@ -29,6 +28,9 @@ _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 
 #: Share of a part below which an overlap is rounding, and least pivot of scaled dual functions, as
 #: in cpp/include/anisocontact/mortar.
 SLIVER, LEAST = 1e-13, 1e-13
+#: Shares of its weight that are covered, over the largest, below which a node gives all of its
+#: weights away and above which it keeps them, as there.
+GIVEN, KEPT = 0.15, 0.25
 #: Share of a whole edge that each function makes up, by their number.
 _WHOLE = {2: [1 / 2, 1 / 2], 3: [1 / 6, 1 / 6, 2 / 3]}
 
@@ -128,12 +130,11 @@ class LineWeights:
     """Weights of slave edges and their derivatives: two columns a node of the edge, then a master.
 
     Attributes:
-        masters: Nodes, (f, c), each once, -1 for none.
+        masters: Nodes, (f, c), ascending, -1 behind the last.
         area: D, (f, k); zero where nothing is covered.
         weight: W, (f, k, c).
         d_area: (f, k, 2 (k + c)).
         d_weight: (f, k, c, 2 (k + c)).
-        own: E of `HandOver`, (f, k, k).
     """
 
     masters: Locals
@@ -141,32 +142,38 @@ class LineWeights:
     weight: Floats
     d_area: Floats
     d_weight: Floats
-    own: Floats
 
-    def handed_over(self, whole: Floats, nodes: Locals, points: Floats) -> LineWeights:
-        """Without nodes that would be extrapolated to, see `HandOver`.
+    def handed_over(self, whole: Floats) -> LineWeights:
+        """Without nodes that would be extrapolated to; `whole`, (k,), are those all of which is."""
+        share, d_share = self.area / whole, self.d_area / whole[:, None]
+        most = share.argmax(axis=1)[:, None]
+        covered = np.take_along_axis(share, most, axis=1)
+        covered = np.where(covered > 0.0, covered, 1.0)
+        share = share / covered
+        d_share = d_share - share[..., None] * np.take_along_axis(d_share, most[..., None], axis=1)
+        t = np.clip((KEPT - share) / (KEPT - GIVEN), 0.0, 1.0)
+        gives = t * t * (3.0 - 2.0 * t)
+        d_gives = (-6.0 * t * (1.0 - t) / ((KEPT - GIVEN) * covered))[..., None] * d_share
+        rest = ((1.0 - gives) @ whole)[:, None]
+        rest[rest == 0.0] = 1.0  # edges of which nothing is covered
+        gets = (1.0 - gives) * whole / rest
+        d_keeps = -whole[:, None] * d_gives
+        d_gets = d_keeps - gets[..., None] * d_keeps.sum(axis=1, keepdims=True)
+        d_gets /= rest[..., None]
 
-        Args:
-            whole: Weights of an edge all of which is covered, (k,).
-            nodes: Nodes of the edges, (f, k), which are among the masters of those that hand over.
-            points: Shares of the nodes of an edge in its slave points, (k, k).
-        """
-        by = HandOver.of(self.area, self.d_area, whole)
-        area, d_area = by.moved(self.area[..., None], self.d_area[:, :, None])
-        weight, d_weight = by.moved(self.weight, self.d_weight)
-        own, d_own = by.own(self.area, self.d_area, points)
-        there = (by.gives > 0.0).any(axis=1) & (self.area > 0.0).any(axis=1)
-        masters = np.concatenate([self.masters, np.where(there[:, None], nodes, -1)], axis=1)
-        d_weight = np.concatenate([d_weight, d_own], axis=2)
-        none = [(0, 0), (0, 0), (0, 2 * nodes.shape[1])]
-        return LineWeights(
-            masters.astype(np.int32),
-            area[..., 0],
-            np.concatenate([weight, own], axis=2),
-            np.pad(d_area[:, :, 0], none),
-            np.pad(d_weight, [(0, 0), *none]),
-            own,
-        )
+        def moved(x: Floats, dx: Floats) -> tuple[Floats, Floats]:
+            """(1 - lambda_i) x_i + q_i sum_j lambda_j x_j, x of (f, k, c), and its derivative."""
+            total = np.einsum("fj,fjc->fc", gives, x)
+            d_total = np.einsum("fjv,fjc->fcv", d_gives, x) + np.einsum("fj,fjcv->fcv", gives, dx)
+            slope = (1.0 - gives)[..., None, None] * dx
+            slope += gets[..., None, None] * d_total[:, None]
+            slope += d_gets[:, :, None] * total[:, None, :, None]
+            slope -= d_gives[:, :, None] * x[..., None]
+            return (1.0 - gives)[..., None] * x + gets[..., None] * total[:, None], slope
+
+        area, d_area = moved(self.area[..., None], self.d_area[:, :, None])
+        weight, d_weight = moved(self.weight, self.d_weight)
+        return LineWeights(self.masters, area[..., 0], weight, d_area[:, :, 0], d_weight)
 
 
 def listed(owner: Ints, nodes: Locals, count: int) -> Locals:
@@ -224,8 +231,7 @@ def _dual(masters: Locals, total: Floats, rates: Floats) -> LineWeights:
     right = dw - np.einsum("fijv,fjc->ficv", dm, z)
     d_weight = np.einsum("fij,fjcv->ficv", inverse, right)
     d_weight = area[:, :, None, None] * d_weight + z[..., None] * d_area[:, :, None]
-    weight = area[:, :, None] * z
-    return LineWeights(masters, area, weight, d_area, d_weight, np.zeros_like(m))
+    return LineWeights(masters, area, area[:, :, None] * z, d_area, d_weight)
 
 
 @dataclass(frozen=True)
@@ -237,7 +243,6 @@ class LineNodes:
         masters: As of `MortarWeights`.
         area: As of `MortarWeights`.
         weight: As of `MortarWeights`.
-        away: Sums of E_ij x_j, (n, 3), length^2 times length.
         d_area: (n, 3 c), c nodes of the patch and masters, length.
         d_weight: (n, k, 3 c), length.
     """
@@ -246,7 +251,6 @@ class LineNodes:
     masters: Locals
     area: Floats
     weight: Floats
-    away: Floats
     d_area: Floats
     d_weight: Floats
 
@@ -303,8 +307,7 @@ def line_weights(
     edges = _Edges(own.nodes, below, now[:, :2], reference, across, own.transform)
     found = edge_weights(edges, pairs.slave, pairs.master)
     if hand_over:
-        whole, points = _WHOLE[own.nodes.shape[1]] @ own.transform, np.linalg.inv(own.transform)
-        found = found.handed_over(whole, own.nodes, points)
+        found = found.handed_over(_WHOLE[edges.slave.shape[1]] @ own.transform)
     n, patch = around.nodes.shape
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     f, i = around.facets, around.local
@@ -325,7 +328,4 @@ def line_weights(
     at = owner[:, None, None], place[:, :, None], columns[:, None]
     np.add.at(d_weight, at, found.d_weight[f, i])
     area = np.bincount(owner, found.area[f, i], minlength=n)
-    own_places = np.einsum("fj,fjx->fx", found.own[f, i], now[edges.slave[f]])
-    away = np.zeros((n, 3))
-    np.add.at(away, owner, own_places)
-    return LineNodes(around, masters, area, weight, away, d_area, d_weight)
+    return LineNodes(around, masters, area, weight, d_area, d_weight)

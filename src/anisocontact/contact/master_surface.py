@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
-from anisocontact.contact.far_nodes import NONE, FarNodes, globally, node_count, owned_among
+from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sweep import ROWS, Sweep
 from anisocontact.mesh.split import Route, Split, arranged
@@ -53,12 +53,12 @@ class MasterSurface:
         keys = facet_keys(space.mesh, np.sort(facets))
         self._ranks = _Ranks(comm, keys)
         self._own_numbers = self._ranks.find(keys)
-        self._total = int(comm.allreduce(len(keys)))
         if self.distributed:
             # All facets, an even share of them on every process, for those who ask.
             index_map = space.dofmap.index_map
             nodes = index_map.local_to_global(own.nodes.reshape(-1)).reshape(own.nodes.shape)
-            self._table = arranged(comm, self._total, self._own_numbers, nodes, own.flip)
+            total = comm.allreduce(len(nodes))
+            self._table = arranged(comm, total, self._own_numbers, nodes, own.flip)
             self._rows = Split(comm, len(self._table[0]))
             self.gather(NONE)
         else:
@@ -139,31 +139,6 @@ class MasterSurface:
     def globally(self, facets: npt.NDArray[Any]) -> Locals:
         """Numbers in the whole group of facets of this process, -1 for none, (n,)."""
         return np.asarray(np.append(self.numbers, -1)[facets], dtype=np.int32)
-
-    @property
-    def name_count(self) -> int:
-        """How many `names` there are: names of other nodes are from there on."""
-        return self._images * self._width * self._total
-
-    def has(self, nodes: Locals) -> Flags:
-        """Whether nodes, numbered as `reference`, are of facets that this process has."""
-        return np.isin(self._row_and_node(nodes)[1], self._row_and_node(self.facets.nodes)[1])
-
-    def as_gathered(self, nodes: Locals) -> Locals:
-        """Nodes by the number that they were gathered with, if they were.
-
-        Args:
-            nodes: Numbered as `reference`, -1 for none.
-        """
-        if not self.distributed:
-            return nodes
-        first, known = len(self._beside), self._far.numbers[len(self._beside) :]
-        out, there = nodes.copy(), np.flatnonzero(nodes.reshape(-1) >= 0)
-        numbers = globally(self._far.coupled(nodes.reshape(-1)[there]), self._space)
-        place = np.searchsorted(known, numbers)
-        found = np.append(known, -1)[place] == numbers
-        out.reshape(-1)[there[found]] = len(self.start) + first + place[found]
-        return out
 
     def names(self, nodes: Locals) -> Locals:
         """Nodes of facets of this process by the first of these and their place on it.

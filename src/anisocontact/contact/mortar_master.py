@@ -29,7 +29,7 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
-from anisocontact.contact.opposite_names import OppositeNames
+from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
@@ -80,7 +80,6 @@ class MortarMaster(MeshedMaster):
         self._resting: Sequence[Resting] = ()
         self._flags: Sequence[Resting] = ()
         self._fold = Fold(points, sides.gathered) if folded else None
-        self._names = OppositeNames(sides.gathered, points)
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
@@ -142,17 +141,12 @@ class MortarMaster(MeshedMaster):
         state["xi"][located] = self._at.planes.xi[located]
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
-        self._then = self._remembered()
+        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
         if self._fold is not None:
             self._fold.commit()
         self._count_as_then(state)
         self._at = self._placed(self._at.weights)
         return state
-
-    def _remembered(self) -> Opposite:
-        """What is opposite where the nodes are, as it is had where a run goes on."""
-        here = self._at.opposite[0].with_axes(self._at.planes.now)
-        return replace(here, masters=self._gathered.as_gathered(here.masters)).in_order()
 
     def _count_as_then(self, state: State) -> None:
         """Let states refer to the planes of the accepted increment."""
@@ -168,7 +162,7 @@ class MortarMaster(MeshedMaster):
                 hint.facet[:] = self._gathered.globally(hint.facet)
             known, before = self._replaced or (None, None)
             thens = [one for one in (self._then, before) if one is not None]
-            named = [self._names.named(one) for one in thens]
+            named = [names_of(one, self._gathered) for one in thens]
             thens = self._number_anew(u, named, [hint.facet for hint in hints])
             self._then = thens[0]
             if known is not None:
@@ -186,18 +180,20 @@ class MortarMaster(MeshedMaster):
 
         Args:
             u: Displacements of the local nodes, (nodes, 3), length.
-            thens: As of `OppositeNames.named`.
+            thens: As of `names_of`.
             hints: Facets of the whole group, -1 for none; those of this process are written.
 
         Returns:
             What was opposite, with the numbers of this process.
         """
         gathered = self._gathered
-        self._have(u, *hints, *self._names.facets(thens))
+        named = [(then.masters, then.around) for then in thens]
+        owners = [gathered.facets_of_names(one) for both in named for one in both]
+        self._have(u, *hints, *(then.facet for then in thens), *owners)
         for facets in hints:
             facets[:] = gathered.renumbered(facets)
         self._spread_flags()
-        return [self._names.numbered(then) for then in thens]
+        return [numbers_of(then, gathered) for then in thens]
 
     def _spread_flags(self) -> None:
         """Take what rests among gathered nodes as well; collective."""
@@ -226,8 +222,7 @@ class MortarMaster(MeshedMaster):
         traction = found["traction"] - along(held, found["traction"])
         response = response_of(found | {"traction": traction}, failed)
         which = np.flatnonzero(response.status != 0).astype(np.int32)
-        x, weights = at.planes.slave, at.weights
-        snapshot = Snapshot(x, weights.area, response, acting=x - weights.away)
+        snapshot = Snapshot(at.planes.slave, at.weights.area, response)
         by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
         if tangent:
             by_nodes = found["slopes"][which]
@@ -341,7 +336,7 @@ class MortarMaster(MeshedMaster):
         fresh = (start["facet"] >= 0) & (start["facet"] < len(start))
         if not self._comm.allreduce(int(fresh.any())):
             return
-        here = self._remembered()
+        here = self._at.opposite[0].with_axes(self._at.planes.now)
         if self._replaced is None:
             self._replaced = (np.zeros(len(start), dtype=bool), self._then)
         known, before = self._replaced
@@ -354,7 +349,7 @@ class MortarMaster(MeshedMaster):
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         if now is None:
             return np.zeros((0, 3))
-        self._then = self._remembered()
+        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
         self._replaced = None
         if self._fold is not None:
             self._fold.commit()
@@ -376,7 +371,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint, then = self._accepted[1], self._names.named(self._then)
+        hint, then = self._accepted[1], names_of(self._then, self._gathered)
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
         kept["projection.facet"] = self._gathered.globally(hint.facet)
         kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)

@@ -6,7 +6,6 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Floats, Ints, Locals
-from anisocontact.contact.facet_mesh import border_facets
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -19,8 +18,7 @@ def mortar_reachable(
     """Nodes that a tangent can couple where slave nodes go along a way.
 
     A slave node couples the nodes around it with those of all facets of the master that these
-    facets may lie on, and the latter with each other. Where the master ends among these its force
-    acts on the nodes around it as well, see `hand_over` of the weights.
+    facets may lie on, and the latter with each other.
 
     Args:
         sides: Slave and master; the surface is where the nodes are.
@@ -50,12 +48,8 @@ def mortar_reachable(
     first, second = below.nonzero()
     both = (below.T @ below).nonzero()
     own_masters = second[:, None].astype(np.int32)
-    ends = np.isin(np.arange(len(x)), point[border_facets(sides.master)[facet]])
-    shared = ends[first]
     pairs = [
         (own, nodes),
-        (nodes[ends], nodes[ends]),
-        (nodes[first[shared]], own_masters[shared]),
         (own[first], own_masters),
         (own_masters, nodes[first]),
         (both[0][:, None].astype(np.int32), both[1][:, None].astype(np.int32)),

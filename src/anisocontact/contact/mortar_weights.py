@@ -62,27 +62,23 @@ class Differentiated(Protocol):
 class MortarWeights:
     """Weights of slave nodes on the nodes of the master that their dual functions reach.
 
-    Where nodes hand over on a facet of the slave the dual functions of the others reach several
-    nodes of it: these are among the masters, with E_ij for weights, of no sum over j.
-
     Attributes:
         masters: Nodes, (n, k), ascending, -1 behind the last.
         area: D_i, integral of the dual function over what is covered, (n,), length^2.
         weight: W_ik, integral of it with the shape functions of the master, (n, k), length^2.
-        away: How far before the slave point its force acts, sum_j E_ij x_j / D_i, (n, 3), length.
         core: What has found them, and differentiates them.
     """
 
     masters: Locals
     area: Floats
     weight: Floats
-    away: Floats
     core: Differentiated
 
     @property
     def shares(self) -> Floats:
         """W_ik / D_i, (n, k); zero where nothing is covered."""
-        return _over(self.weight, self.area)
+        area = self.area[:, None]
+        return np.divide(self.weight, area, out=np.zeros_like(self.weight), where=area > 0.0)
 
 
 def mortar_weights(
@@ -111,9 +107,7 @@ def mortar_weights(
         found = line_weights(
             sides, around, now, more, pairs, current_area=current_area, hand_over=hand_over
         )
-        return MortarWeights(
-            found.masters, found.area, found.weight, _over(found.away, found.area), found
-        )
+        return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
     offsets, opposite = _by_slave(pairs, len(slave.nodes), len(master.nodes))
     there = more >= 0
@@ -143,14 +137,7 @@ def mortar_weights(
         memory=around.memory,
         threads=sides.threads,
     )
-    away = _over(core.away, core.area)
-    return MortarWeights(core.masters, core.area, core.weight, away, core)
-
-
-def _over(values: Floats, area: Floats) -> Floats:
-    """Values of nodes, (n, k), over their weights, (n,); zero where nothing is covered."""
-    there = area[:, None] > 0.0
-    return np.divide(values, area[:, None], out=np.zeros_like(values), where=there)
+    return MortarWeights(core.masters, core.area, core.weight, core)
 
 
 def _by_slave(pairs: Pairs, slaves: int, masters: int) -> tuple[Ints, Locals]:

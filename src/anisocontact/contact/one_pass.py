@@ -288,8 +288,8 @@ class Pass:
         """What the laws store and dissipate from the accepted state to the trial, of this rank.
 
         Args:
-            mean_pressure: Whether friction has the mean of the normal forces of both ends, which a
-                way in equilibrium has; that of the end otherwise, with which it is counted.
+            mean_pressure: Whether friction has the mean of the pressures of both ends, which a way
+                in equilibrium has; that of the end otherwise, with which it is counted.
 
         Returns:
             Energy; what friction dissipates is along the way that bodies which flow have gone.
@@ -299,8 +299,8 @@ class Pass:
         friction = dissipated(self.state, self._way, state) if self._way else state["dissipation"]
         gained = friction - self.state["dissipation"]
         if mean_pressure:
-            loads = [at.areas * of["pressure"] for at, of in ((before, self.state), (now, state))]
-            gained *= 0.5 * (1.0 + loads[0] / np.where(loads[1] > 0.0, loads[1], np.inf))
+            end = np.where(state["pressure"] > 0.0, state["pressure"], np.inf)
+            gained *= 0.5 * (1.0 + self.state["pressure"] / end)
         gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
         stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
         held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]
@@ -344,7 +344,6 @@ class Pass:
             "state": self.state,
             "points": now.points,
             "areas": now.areas,
-            "acting": now.acting,
             "gained": self._gained,
             "dissipated": self._dissipated,
             "level": np.full(len(now.areas), self.trials.level),
@@ -366,8 +365,7 @@ class Pass:
             state=self.state,
             **{name: np.array(kept[name]) for name in _KEPT},
         )
-        points, areas, acting = (np.array(kept[name]) for name in ("points", "areas", "acting"))
-        self.accepted = Snapshot(points, areas, response, acting)
+        self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._gained, self._trial = np.array(kept["gained"]), None
         self._dissipated = np.array(kept["dissipated"])
         self.trials.level = max(self._comm.allgather(float(kept["level"].max(initial=0.0))))

@@ -28,8 +28,8 @@ model = "{model}"
 E = 3000
 nu = 0.3
 [[contact]]
-slave = "{slave}"
-master = "{master}"
+slave = "block.bottom"
+master = "base.top"
 pass = "mortar"
 friction = {{ coefficients = 0.3 }}
 [[step]]
@@ -49,28 +49,21 @@ strategy = "{strategy}"
 """
 
 
-SIDES = ("block.bottom", "base.top")
-
-
 @pytest.mark.parametrize(
-    ("kind", "order", "model", "strategy", "sides"),
+    ("kind", "order", "model", "strategy"),
     [
-        ("plane-strain", 1, "linear-elastic", "direct", SIDES),
-        ("plane-strain", 1, "neo-hookean", "condensed", SIDES),
-        ("axisymmetric", 1, "linear-elastic", "condensed", SIDES[::-1]),
-        ("axisymmetric", 2, "linear-elastic", "direct", SIDES[::-1]),
+        ("plane-strain", 1, "linear-elastic", "direct"),
+        ("plane-strain", 1, "neo-hookean", "condensed"),
+        ("axisymmetric", 1, "linear-elastic", "condensed"),
+        ("axisymmetric", 2, "linear-elastic", "direct"),
     ],
 )
-def test_mortar_contact_goes_on_bit_by_bit(
-    tmp_path, kind, order, model, strategy, sides, same, gone_on
-):
+def test_mortar_contact_goes_on_bit_by_bit(tmp_path, kind, order, model, strategy, same, gone_on):
     """A run halted in the middle of a drag by more than a facet is the whole one.
 
     What was opposite to a slave node at the accepted increment, which its slip counts from, are
-    nodes of edges: facets of order 1, swept to both sides of the plane, have none of them. Where
-    the base is the slave there are nodes of its own among them.
+    nodes of edges: facets of order 1, swept to both sides of the plane, have none of them.
     """
     case = tmp_path / "case.toml"
-    given = {"slave": sides[0], "master": sides[1], "strategy": strategy}
-    case.write_text(CASE.format(kind=kind, order=order, model=model, **given))
+    case.write_text(CASE.format(kind=kind, order=order, model=model, strategy=strategy))
     assert same(*gone_on(case, 2))

@@ -56,11 +56,6 @@ def step(name: str, increments: int, z: float | None = None, x: float | None = N
     )
 
 
-@pytest.mark.xfail(
-    reason="the border of the block lies within facets of the plate: 29 % too much force up with "
-    "weights handed over there, which act on their own nodes",
-    strict=True,
-)
 def test_stiffness_ratio_of_a_million(to_the_end):
     """A block a million times stiffer than the plate, pressed in by a quarter in one increment.
 

@@ -3,19 +3,45 @@
 //   integral of psi_i N_j = delta_ij integral of N_j   [Wohlmuth 2000],
 // biorthogonal on what the master covers [Cichosz Bischoff 2011], and with them
 //   D_i = integral of N_i,   W_ik = integral of psi_i M_k = D_i (m^-1 c)_ik .
-// Where hardly anything of a node is covered, psi_i is added to those of the others, see `hand_over`.
+// Where hardly anything of a node is covered, psi_i is added to those of the others.
 
 #include <algorithm>
 #include <span>
 #include <tuple>
 #include <vector>
 
-#include "anisocontact/mortar/facet_weights.hpp"
-#include "anisocontact/mortar/hand_over.hpp"
 #include "anisocontact/mortar/integrator.hpp"
 #include "anisocontact/tensor/inline.hpp"
 
 namespace anisocontact::mortar {
+
+/// Facets of a mesh.
+struct Facets {
+  Topology topology;
+  const std::int32_t* nodes;  ///< (count, node_count)
+  std::size_t count;
+
+  std::size_t width() const { return surface::node_count(topology); }
+  std::int32_t node(std::size_t f, std::size_t a) const { return nodes[f * width() + a]; }
+  Facet at(std::size_t f, const double* x) const {
+    Facet out{topology, {}};
+    for (std::size_t a = 0; a < width(); ++a) {
+      const double* p = x + 3 * static_cast<std::size_t>(node(f, a));
+      out.x[a] = {p[0], p[1], p[2]};
+    }
+    return out;
+  }
+};
+
+/// Weights of a facet and their derivatives: three columns for each node of the facet, then of
+/// `masters`.
+struct DualWeights {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  std::vector<std::int32_t> masters;  ///< nodes, ascending
+  Eigen::VectorXd area;               ///< D
+  Matrix weight;                      ///< W, (slaves, masters)
+  Matrix d_area, d_weight;            ///< (slaves, columns), (slaves * masters, columns)
+};
 
 namespace detail {
 
@@ -121,6 +147,96 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
   return true;
 }
 
+/// Shares of its weight that are covered, over that of the node of the facet of which most is, below
+/// which a node gives all of its weights away and above which it keeps them: dual functions of less
+/// extrapolate from a strip to where nothing is covered.
+inline constexpr double given = 0.15, kept = 0.25;
+
+/// What nodes of a facet give away and what they get of it.
+struct HandOver {
+  Eigen::VectorXd covered, gives,
+      gets;    ///< shares: covered, of the node's own, and of what all give
+  Index most;  ///< the node of which most is covered
+};
+
+/// Shares lambda that nodes give, smooth in what is covered, and those q that they get,
+///   lambda = t^2 (3 - 2 t), t = (kept - s) / (kept - given), s = D_i / D_i^whole over the largest,
+///   q_i = (1 - lambda_i) D_i^whole / sum_k (1 - lambda_k) D_k^whole .
+/// So a node gets no more of others than suits its own: in equal shares the mean of the master that a vertex
+/// of order 2 meets would lie facets away. Weights of now would let those of which little is covered get
+/// next to nothing, and carry a force on a sliver that a slip of the border takes away.
+inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen::VectorXd& area) {
+  HandOver out;
+  const Eigen::VectorXd covered = area.cwiseProduct(per_whole);
+  const double largest = covered.maxCoeff(&out.most);
+  out.covered = covered / largest;
+  const Eigen::ArrayXd t = ((kept - out.covered.array()) / (kept - given)).max(0.0).min(1.0);
+  out.gives = t * t * (3.0 - 2.0 * t);
+  out.gets = (1.0 - out.gives.array()) / per_whole.array();
+  out.gets /= out.gets.sum();
+  return out;
+}
+
+/// Derivatives of what nodes give and get, (slaves, columns) each.
+inline std::array<DualWeights::Matrix, 2> slopes_handed_over(const Eigen::VectorXd& per_whole,
+                                                             const DualWeights& in,
+                                                             const HandOver& by) {
+  if (in.d_area.cols() == 0) return {};
+  const double largest = in.area[by.most] * per_whole[by.most];
+  const Eigen::ArrayXd t = ((kept - by.covered.array()) / (kept - given)).max(0.0).min(1.0);
+  const Eigen::VectorXd slope = -6.0 * t * (1.0 - t) / ((kept - given) * largest);
+  DualWeights::Matrix gives = per_whole.asDiagonal() * in.d_area;
+  gives -= by.covered * Eigen::RowVectorXd(gives.row(by.most));
+  gives = slope.asDiagonal() * gives;
+  const Eigen::VectorXd whole = per_whole.cwiseInverse();
+  DualWeights::Matrix gets = by.gets * (whole.transpose() * gives) - whole.asDiagonal() * gives;
+  gets /= whole.dot(Eigen::VectorXd(1.0 - by.gives.array()));
+  return {gives, gets};
+}
+
+/// Whether any node of a facet gives anything away.
+inline bool any_gives(std::span<const double> whole, const Eigen::VectorXd& area) {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const double covered = area[static_cast<Index>(i)] / whole[i];
+    least = std::min(least, covered);
+    largest = std::max(largest, covered);
+  }
+  return !(least >= kept * largest);
+}
+
+/// Gives the weights of nodes that would be extrapolated to the other nodes of the facet, so that a
+/// uniform traction is still handed over exactly; `whole` are the weights where all is covered.
+inline void hand_over(std::span<const double> whole, DualWeights& out) {
+  if (!any_gives(whole, out.area)) return;
+  const auto n = static_cast<Index>(whole.size()), columns = out.d_area.cols();
+  const Eigen::VectorXd per_whole =
+      Eigen::Map<const Eigen::VectorXd>(whole.data(), n).cwiseInverse();
+  const HandOver by = shares_handed_over(per_whole, out.area);
+  if (!(by.gives.maxCoeff() > 0.0)) return;
+  const auto [d_gives, d_gets] = slopes_handed_over(per_whole, out, by);
+  const Eigen::VectorXd keeps = 1.0 - by.gives.array();
+  // x_i becomes (1 - lambda_i) x_i + q_i sum_j lambda_j x_j
+  const auto move = [&, &d_give = d_gives, &d_get = d_gets](DualWeights::Matrix& x,
+                                                            DualWeights::Matrix& dx) {
+    const Eigen::RowVectorXd sum = by.gives.transpose() * x;
+    for (Index k = 0; k < x.cols() && columns > 0; ++k) {
+      Eigen::RowVectorXd d_sum = Eigen::RowVectorXd::Zero(columns);
+      for (Index j = 0; j < n; ++j)
+        d_sum += d_give.row(j) * x(j, k) + by.gives[j] * dx.row(j * x.cols() + k);
+      for (Index i = 0; i < n; ++i) {
+        auto row = dx.row(i * x.cols() + k);
+        row = keeps[i] * row - d_give.row(i) * x(i, k) + d_get.row(i) * sum[k] + by.gets[i] * d_sum;
+      }
+    }
+    x = (keeps.asDiagonal() * x + by.gets * sum).eval();
+  };
+  move(out.weight, out.d_weight);
+  DualWeights::Matrix area = out.area;
+  move(area, out.d_area);
+  out.area = area;
+}
+
 }  // namespace detail
 
 /// What the weights of facets are found from.
@@ -183,7 +299,6 @@ inline void dual_weights(const MortarInput& in, std::size_t f,
   const Facet slave = in.slave.at(f, in.now);
   detail::find_overlaps(in, slave, f, candidates, memory);
   out.masters.clear();
-  out.own.resize(0, 0);
   out.masters.reserve(memory.found.size() * in.master.width());
   for (const Overlap& o : memory.found)
     for (std::size_t a = 0; a < in.master.width(); ++a)
@@ -214,7 +329,7 @@ inline void dual_weights(const MortarInput& in, std::size_t f,
     return good;
   });
   if (!any) return out.masters.clear();
-  if (!in.whole.empty()) detail::hand_over(in.whole, in.slave.topology, in.slave.of(f), out);
+  if (!in.whole.empty()) detail::hand_over(in.whole, out);
 }
 
 }  // namespace anisocontact::mortar

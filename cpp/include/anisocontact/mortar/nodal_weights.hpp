@@ -29,7 +29,6 @@ struct NodalWeights {
   std::size_t most;
   std::int32_t* masters;  ///< (n, most), ascending
   double *area, *weight;  ///< (n,), (n, most)
-  double* away;           ///< sum of E_ij x_j, see `hand_over`, (n, 3)
   std::int32_t* count;    ///< masters of each, (n,)
   /// Which of them are nodes of the facets that it overlaps, ascending: others have no weight.
   std::vector<std::vector<std::int32_t>> reached;
@@ -60,7 +59,7 @@ inline std::vector<std::int32_t> masters_of(const std::vector<DualWeights>& face
 }
 
 /// Writes the weights of a node; what is written to is zero before.
-inline void collect(const MortarInput& in, const std::vector<DualWeights>& facets, const Patches& p,
+inline void collect(const std::vector<DualWeights>& facets, const Patches& p,
                     const std::vector<std::int32_t>& masters, std::size_t i, NodalWeights& out) {
   std::copy(masters.begin(), masters.end(), out.masters + i * out.most);
   out.count[i] = static_cast<std::int32_t>(masters.size());
@@ -74,12 +73,6 @@ inline void collect(const MortarInput& in, const std::vector<DualWeights>& facet
       const std::size_t there = out.place(i, own.masters[k]);
       out.weight[i * out.most + there] += own.weight(row, static_cast<Eigen::Index>(k));
       reached[there] = 1;
-    }
-    for (Eigen::Index j = 0; j < own.own.cols(); ++j) {
-      const auto f = static_cast<std::size_t>(p.facet.begin(i)[e]);
-      const auto node = static_cast<std::size_t>(in.slave.node(f, static_cast<std::size_t>(j)));
-      for (std::size_t x = 0; x < 3; ++x)
-        out.away[3 * i + x] += own.own(row, j) * in.now[3 * node + x];
     }
   }
   for (std::size_t k = 0; k < masters.size(); ++k)
