@@ -88,9 +88,11 @@ def test_auto_penalty_scales_with_units(fe):
     base = fe.block(fe.interface(), cells=(4, 4, 2))
     penalty = auto_penalty(base.model, "block.bottom", base.material)
     assert penalty == pytest.approx(PENALTY_FACTOR * 1000.0 / 0.25)
-    other = fe.block(fe.interface(), cells=(4, 4, 2), size=(1e3, 1e3, 5e2), young=10.0)
+    # penalties of 1 m and Pa would be beyond rounding for 1000 m and a millionth of it
+    soft = fe.interface(penalty=1e-5, stiffness=(4e-6, 1e-6))
+    other = fe.block(soft, cells=(4, 4, 2), size=(1e3, 1e3, 5e2), young=1e-3)
     scaled = auto_penalty(other.model, "block.bottom", other.material)
-    assert scaled == pytest.approx(penalty * 1e-2 / 1e3)
+    assert scaled == pytest.approx(penalty * 1e-6 / 1e3)
 
 
 def test_misspelt_slave_suggests_the_near_one(fe):

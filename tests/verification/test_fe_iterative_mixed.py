@@ -31,7 +31,7 @@ from anisocontact.interface import Interface
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.solver import Problem, Solver, Step, StoppedError, Tie
 from anisocontact.solver.strategies.iterative import levels, mixed, newton
-from anisocontact.solver.strategies.iterative.mixed import MixedForm
+from anisocontact.solver.strategies.iterative.mixed import DisplacementPressureForm
 from anisocontact.surfaces import make_surface
 
 RUBBER = {"model": "neo-hookean-incompressible", "E": 1000.0}
@@ -138,7 +138,7 @@ def test_the_mixed_form_is_the_tangent() -> None:
     tangent: Mat = problem.new_tangent()
     problem.tangent(x, tangent)
     volume = problem.bulk.volume
-    form = MixedForm(problem, volume)
+    form = DisplacementPressureForm(problem, volume)
     form.take(tangent)
     rows = volume.rows()
     free = np.ones(problem.unknowns)

@@ -14,7 +14,7 @@ from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
-from anisocontact.bulk.pressures import CellPressures, VolumeRows
+from anisocontact.bulk.pressures import CellPressures
 from anisocontact.mesh import Model
 
 
@@ -137,10 +137,6 @@ class LinearBulk:
     def volume(self) -> CellPressures | None:
         """Changes of volume that are kept apart; None where there are none."""
         return self._pressures if self._pressures.of else None
-
-    def volume_rows(self) -> VolumeRows | None:
-        """As of `CellPressures.rows`."""
-        return self._pressures.rows()
 
     def times(self, x: Vec) -> Vec:
         """The product of the stiffness with a vector."""

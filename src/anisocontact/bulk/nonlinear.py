@@ -26,7 +26,7 @@ from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
-from anisocontact.bulk.pressures import CellPressures, VolumeRows
+from anisocontact.bulk.pressures import CellPressures
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -178,10 +178,6 @@ class NonlinearBulk:
     def volume(self) -> CellPressures | None:
         """Changes of volume that are kept apart; None where there are none."""
         return self._pressures if self._pressures.of else None
-
-    def volume_rows(self) -> VolumeRows | None:
-        """As of `CellPressures.rows`."""
-        return self._pressures.rows()
 
     def times(self, x: Vec) -> Vec:
         """The product of what `tangent` has written last with a vector, on one process."""

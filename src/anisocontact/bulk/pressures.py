@@ -47,6 +47,9 @@ from anisocontact.mesh import Model
 MOST = 1.0
 #: From which on its pressures follow the corrections: nu = 0.496.
 FOLLOW = 50.0
+#: Residual of displacements alone over that of both in a mixed form, at most, where pressures count
+#: as of `CellPressures.force_sizes`.
+OF_BOTH = 2.0**0.5
 
 
 def pressure_element(space: Any) -> Any:
@@ -68,17 +71,16 @@ class VolumeRows:
     Attributes:
         slope: B, derivatives of the changes of volume `<q, e>`, (pressures, displacements).
         stiffness: C^-1, the inverse of `<q, p> / K`, of each cell, (cells, k, k).
+        sizes: As of `CellPressures.force_sizes`.
     """
 
     slope: scipy.sparse.csr_array
     stiffness: Floats
+    sizes: Floats
 
     def pressures(self, change: Floats) -> Floats:
         """`C^-1 e`, (pressures,)."""
-        if self.stiffness.shape[1] == 1:
-            return self.stiffness.reshape(-1) * change
-        by_cell = change.reshape(*self.stiffness.shape[:2], 1)
-        return np.asarray((self.stiffness @ by_cell).reshape(-1))
+        return _pressures_of(self.stiffness, change)
 
 
 class CellPressures:
@@ -200,13 +202,11 @@ class CellPressures:
         add_matrix(out, self._stiffness)
         out.assemble()
 
-    def rows(self) -> VolumeRows | None:
-        """What `add_tangent` has added last, in its parts; None where no volume is kept apart."""
-        if not self.of:
-            return None
+    def rows(self) -> VolumeRows:
+        """What `add_tangent` has added last, in its parts, on one process."""
         starts, columns, values = self._slope.getValuesCSR()
         slope = scipy.sparse.csr_array((values, columns, starts), self._slope.getSize())
-        return VolumeRows(slope, self._blocks)
+        return VolumeRows(slope, self._blocks, self.force_sizes())
 
     def add_product(self, x: Vec, out: Vec) -> None:
         """Add the product of what `add_tangent` has added last with a vector; collective."""
@@ -242,7 +242,33 @@ class CellPressures:
 
     def stiffened(self, change: Floats) -> Floats:
         """Pressures of this rank for changes of volume `<q, e>`, `C^-1 e`, (pressures,)."""
-        return np.asarray((self._blocks @ change.reshape(-1, self._width, 1)).reshape(-1))
+        return _pressures_of(self._blocks, change)
+
+    def force_sizes(self) -> Floats:
+        """Forces that pressures of one make, by which the residual of a mixed form counts them.
+
+        Forces of as many pressures meet at a node, so that the norm of `B^T p` is at most that of
+        the pressures times these.
+
+        Returns:
+            Of the pressures of this rank, (pressures,), length^2; 1 for those that make none.
+        """
+        starts, _, values = self._slope.getValuesCSR()
+        squares = np.concatenate([[0.0], np.cumsum(values**2)])
+        sizes = np.sqrt(self._meeting * np.diff(squares[starts]))
+        return np.where(sizes > 0.0, sizes, 1.0)
+
+    @cached_property
+    def _meeting(self) -> float:
+        """Most pressures that have a force on one displacement, over all ranks."""
+        ones = self._slope.copy()
+        starts, columns, values = ones.getValuesCSR()
+        ones.setValuesCSR(starts, columns, np.ones_like(values))
+        ones.assemble()
+        count, all_of_them = ones.createVecs()
+        all_of_them.set(1.0)
+        ones.multTranspose(all_of_them, count)
+        return float(max(1.0, count.max()[1]))
 
     def stiffness_beyond(self, kept: Floats) -> Mat:
         """What `add_tangent` has added last beyond a share of it; collective.
@@ -332,3 +358,10 @@ def _assemble_anew(matrix: Mat, form: Any) -> None:
     matrix.zeroEntries()
     assemble_into(matrix, form)
     matrix.assemble()
+
+
+def _pressures_of(stiffness: Floats, change: Floats) -> Floats:
+    """`C^-1 e` of C^-1 by cells, (cells, k, k), and e, (pressures,)."""
+    if stiffness.shape[1] == 1:
+        return stiffness.reshape(-1) * change
+    return np.asarray((stiffness @ change.reshape(*stiffness.shape[:2], 1)).reshape(-1))

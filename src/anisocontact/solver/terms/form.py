@@ -76,9 +76,6 @@ class FormBulk:
         """Unknown: a form has none."""
         return 0.0
 
-    def volume_rows(self) -> None:
-        """Nothing is eliminated in cells."""
-
     def set_pressures(self, u: Any) -> None:
         """Nothing: the form has its own."""
 

@@ -199,8 +199,8 @@ class LaggedFactor:
         most = max(_PATIENCE, int(factor.solutions_per_factor))
         # of a new factor all that it can do is wanted: those in double precision are dearer
         trial = None if fresh else int(_TRIAL * most)
-        rows = self._problem.bulk.volume_rows()
-        if rows is None:
+        volume = self._problem.bulk.volume
+        if volume is None:
 
             def step(v: Floats) -> tuple[Floats, Floats]:
                 found = solution(v)
@@ -208,7 +208,7 @@ class LaggedFactor:
 
             found, left, used = gmres(step, b, rtol, most, trial)
         else:
-            mixed = MixedForm(self._problem, self._slope, rows)
+            mixed = MixedForm(self._problem, self._slope, volume.rows())
             found, left, used = mixed.solve(solution, product, b, rtol, most, trial)
         self.krylov[-1] += used
         self._count(factor, spent + used, left, fresh)
@@ -239,9 +239,9 @@ class LaggedFactor:
             return False
         if factor is not self._factor:
             self._drop()
-        rows = self._problem.bulk.volume_rows()
-        if rows is not None:
-            self._slope = rows.slope
+        volume = self._problem.bulk.volume
+        if volume is not None:
+            self._slope = volume.rows().slope
         self._factor, self._touched = factor, touched
         self._due = False
         self._interiors += 1

@@ -14,13 +14,10 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Floats
-from anisocontact.bulk.pressures import VolumeRows
+from anisocontact.bulk.pressures import OF_BOTH, VolumeRows
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.system.problem import Problem
-
-#: Residual of the displacements alone over that of the mixed form, at most.
-_OF_BOTH = 2.0**0.5
 
 
 class MixedForm:
@@ -32,8 +29,7 @@ class MixedForm:
 
         u = J_0^-1 (f - B_0^T g),  s = C^-1 (B_0 - B) u + g.
 
-    Pressures are counted with the forces that they make, so that a residual is never smaller than
-    that of the displacements alone.
+    Pressures are counted with the forces that they make, see `OF_BOTH`.
 
     Args:
         problem: The problem, on one process.
@@ -45,10 +41,7 @@ class MixedForm:
         self._now, self._changed = now, then - now.slope
         self._columns = now.slope.shape[1]
         self._forces, self._forces_then = (_forces(problem, slope) for slope in (now.slope, then))
-        # forces of as many pressures meet at a node
-        meeting = np.bincount(now.slope.indices).max(initial=1)
-        sizes = np.sqrt(meeting * now.slope.power(2).sum(axis=1))
-        self._sizes = np.where(sizes > 0.0, sizes, 1.0)
+        self._sizes = now.sizes
 
     def solve(
         self,
@@ -79,8 +72,8 @@ class MixedForm:
             above, below = product(u) + self._forces @ s, self._sizes * s
             return np.concatenate([u, below]), np.concatenate([above, below])
 
-        found, left, used = gmres(step, right, rtol / _OF_BOTH, most, trial)
-        return found[:n], left * _OF_BOTH, used
+        found, left, used = gmres(step, right, rtol / OF_BOTH, most, trial)
+        return found[:n], left * OF_BOTH, used
 
 
 def _forces(problem: Problem, slope: Sparse) -> Sparse:

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.form_matrix import add_matrix
-from anisocontact.bulk.pressures import CellPressures
+from anisocontact.bulk.pressures import OF_BOTH, CellPressures
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.once import once
@@ -31,11 +31,9 @@ SOFT, GIVING = 1.0, 0.5
 #: softened have no stiffness against some changes of shape. They keep more where a pressure is
 #: more than about a fifth of the modulus, and all of it where it is five times that.
 STRAINED = 30.0
-#: Residual of the displacements alone over that of the mixed form, at most.
-_OF_BOTH = 2.0**0.5
 
 
-class MixedForm:
+class DisplacementPressureForm:
     """The mixed form with unknowns u and s, and what preconditions it, as contexts of PETSc.
 
     By s pressures are off what displacements say: `p = (1 - t) C^-1 B u + s`, where a share t of
@@ -45,8 +43,7 @@ class MixedForm:
 
     and the preconditioner is that of `J_0 = J - B^T (1 - t) C^-1 B`, of bodies that are softened,
     by levels, with the Schur complement of the pressures as a multiple of C. Pressures are counted
-    with the forces that they make, so that the residual of the displacements is at most `2^(1/2)`
-    times that of both.
+    with the forces that they make, see `OF_BOTH`.
 
     Args:
         problem: The problem.
@@ -61,7 +58,6 @@ class MixedForm:
         self._bodies, self._pressures = volume.slope.createVecs()
         self._u, self._f = problem.new_vector(), problem.new_vector()
         self._n, self._m = self._u.getLocalSize(), self._bodies.getLocalSize()
-        self._meeting = _most_meeting(volume.slope)
         self._hard = np.maximum(volume.hardnesses, np.finfo(np.float64).tiny)
         none = np.zeros_like(self._hard)
         self._beyond, self._schur = none, none
@@ -104,10 +100,7 @@ class MixedForm:
         for part in (before, inside, beyond):
             if part is not None:
                 part.destroy()
-        starts, _, values = self._volume.slope.getValuesCSR()
-        squares = np.concatenate([[0.0], np.cumsum(values**2)])
-        sizes = np.sqrt(self._meeting * np.diff(squares[starts]))
-        self.sizes = np.where(sizes > 0.0, sizes, 1.0)
+        self.sizes = self._volume.force_sizes()
 
     def mult(self, _: Mat, x: Vec, y: Vec) -> None:
         """The mixed form times unknowns, for PETSc."""
@@ -151,7 +144,7 @@ class MixedLevels:
         like: Vector of the displacements.
     """
 
-    def __init__(self, form: MixedForm, levels: Levels, like: Vec) -> None:
+    def __init__(self, form: DisplacementPressureForm, levels: Levels, like: Vec) -> None:
         self._form, self._levels = form, levels
         self._rest, self._u = like, like.duplicate()
 
@@ -183,7 +176,11 @@ class MixedKrylov:
         note: Callable[[str], None],
     ) -> None:
         self._count, self._comm, self._note = problem.solved_for, problem.comm, once(note)
-        self._form, self._levels, self._trust = MixedForm(problem, volume), levels, Trust()
+        self._form, self._levels, self._trust = (
+            DisplacementPressureForm(problem, volume),
+            levels,
+            Trust(),
+        )
         self._right, self._found = self._form.new_vector(), self._form.new_vector()
         size = self._right.getSizes()
         matrix = PETSc.Mat().createPython((size, size), self._form, problem.comm)
@@ -224,7 +221,7 @@ class MixedKrylov:
             return int(PETSc.KSP.ConvergedReason.DIVERGED_PCSETUP_FAILED)
         krylov, n = self._krylov, b.getLocalSize()
         rtol, *others = ksp.getTolerances()
-        krylov.setTolerances(rtol / _OF_BOTH, *others)
+        krylov.setTolerances(rtol / OF_BOTH, *others)
         self._right.zeroEntries()
         self._right.array[:n] = b.array_r
         krylov.solve(self._right, self._found)
@@ -247,16 +244,3 @@ class MixedKrylov:
     def destroy(self, _: Any = None) -> None:
         """Give back PETSc's objects."""
         self._krylov.destroy()
-
-
-def _most_meeting(slope: Mat) -> float:
-    """Most pressures that have a force on one displacement."""
-    ones = slope.duplicate()
-    starts, columns, values = slope.getValuesCSR()
-    ones.setValuesCSR(starts, columns, np.ones_like(values))
-    ones.assemble()
-    count, all_of_them = ones.createVecs()
-    all_of_them.set(1.0)
-    ones.multTranspose(all_of_them, count)
-    most = float(count.array_r.max(initial=1.0))
-    return float(slope.getComm().tompi4py().allreduce(most, MPI.MAX))
