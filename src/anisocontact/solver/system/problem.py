@@ -270,7 +270,8 @@ class Problem(ReportedSystem):
     @property
     def in_full(self) -> bool:
         """Whether corrections are taken in full, without a line search, see `corrected`."""
-        return bool(self.assembly.bodies.bulk.follow(None))
+        volume = self.bulk.volume
+        return volume is not None and volume.follow and not self.linear
 
     @override
     def corrected(self) -> AbstractContextManager[bool]:
