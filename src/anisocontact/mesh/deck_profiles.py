@@ -8,12 +8,13 @@ the generator of a cylinder is against the third axis.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.records import dataclass
 from anisocontact.mesh.deck import Card, real
 
 #: Kinds of them.

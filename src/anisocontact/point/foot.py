@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.records import dataclass
 from anisocontact.surfaces import PROJECTION_STATUS, Surface
 
 # Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.rigid.body import RigidBody

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 import numpy as np
@@ -12,6 +12,7 @@ from anisocontact import _core
 from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import blocks
 from anisocontact.base.errors import InputError
+from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

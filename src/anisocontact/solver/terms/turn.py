@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import Rotation, check_vector
 
