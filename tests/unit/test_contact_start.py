@@ -14,7 +14,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact, initial_overlap
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
@@ -104,6 +104,25 @@ def test_group_on_the_wrong_side_is_named() -> None:
     for made in (POINTS, MORTAR):
         with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
             made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
+
+
+@pytest.mark.parametrize("height", [0.8, 0.05])
+def test_back_of_the_body_of_the_slave_is_refused(height: float) -> None:
+    """The top of a block is behind its bottom: pushed in front of it, it turns the block inside out.
+
+    Requirement: one line that names both and the body, for a block and for a plate that is thinner
+    than a facet is wide. The ends of a ring with a gap between them face each other: that stands.
+    """
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, height), (2, 2, 1))})
+    said = r"'block.bottom' has it behind itself, across body 'block', .* \(0, 0, -1\) and \(0, 0, 1\)"
+    for made in (POINTS, MORTAR):
+        with pytest.raises(InputError, match=said):
+            made(model, "block.bottom", "block.top", law=ContactLaw(*_laws()))
+    ring = make_shape(
+        "ring", inner=1.0, outer=2.0, length=1.0, cells=(2, 12, 2), start_deg=5, end_deg=355
+    )
+    split = build_mesh([Body("ring", ring)])
+    assert len(Contact(split, "ring.start", "ring.end", law=ContactLaw(*_laws())).points)
 
 
 def test_bodies_that_face_each_other_pass() -> None:

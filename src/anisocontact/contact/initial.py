@@ -153,6 +153,7 @@ def _check_sides(contact: Beginning, size: float) -> None:
     located = seen.on & (gaps <= contact.master.reach)
     comm = contact.space.mesh.comm
     least = min(comm.allgather(float(gaps[located].min(initial=np.inf))))
+    _check_not_behind(contact, located & (seen.gap < -OVERLAP * size), located, seen.normal)
     nearest = located & (gaps <= least + OVERLAP * size)
     outward = contact.slave_points.outward
     cosine = np.einsum("nd,nd->n", outward, seen.normal)
@@ -167,6 +168,23 @@ def _check_sides(contact: Beginning, size: float) -> None:
         "a plane: its normal the other way), or name the facets on the other side",
         "master",
         seen.normal,
+    )
+
+
+def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal: Floats) -> None:
+    """A body that is drawn does not overlap itself: what is behind all of a slave is its back."""
+    body = contact.slave.partition(".")[0]
+    comm = contact.space.mesh.comm
+    own = all(group.partition(".")[0] == body for group in contact.master.groups)
+    if not (own and contact.master.groups) or comm.allreduce(int((located & ~behind).sum())):
+        return
+    _refuse(
+        contact,
+        behind,
+        f"{contact.slave!r} has it behind itself, across body {body!r}, at {{point}}, where the "
+        "normals of slave and master are {outward} and {normal}; name facets that face each other",
+        "master",
+        normal,
     )
 
 
