@@ -108,13 +108,13 @@ def test_group_on_the_wrong_side_is_named() -> None:
 
 @pytest.mark.parametrize("height", [0.8, 0.05])
 def test_back_of_the_body_of_the_slave_is_refused(height: float) -> None:
-    """The top of a block is behind its bottom: pushed in front of it, it turns the block inside out.
+    """The top of a block is behind its bottom: in front of it, the block would be inside out.
 
     Requirement: one line that names both and the body, for a block and for a plate that is thinner
     than a facet is wide. The ends of a ring with a gap between them face each other: that stands.
     """
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, height), (2, 2, 1))})
-    said = r"'block.bottom' has it behind itself, across body 'block', .* \(0, 0, -1\) and \(0, 0, 1\)"
+    said = r"'block.bottom' has it behind itself, across body 'block'"
     for made in (POINTS, MORTAR):
         with pytest.raises(InputError, match=said):
             made(model, "block.bottom", "block.top", law=ContactLaw(*_laws()))

@@ -169,6 +169,27 @@ def test_a_block_of_which_the_face_alone_is_known(master: str) -> None:
         assert (found is None) == (said == "")
 
 
+def test_a_slab_that_a_ball_dents_is_not_behind_it() -> None:
+    """A ball pressed into a slab by a quarter of its height, where the top alone is known.
+
+    Requirement: nothing is said. A rigid slab that went with its top would have its middle behind
+    the ball, by 0.07 of its size; where it is, no node is, but by the tolerance of multipliers.
+    """
+    model = build_box({"slab": BoxSpec((0, 0, 0), (1, 1, 0.4), (4, 4, 2))})
+    ball = RigidBody("ball", (0.5, 0.5, 1.1))
+    surface = make_surface("sphere", centre=ball.reference, radius=0.7)
+    contact = Contact(
+        model, "slab.top", MovingSurface(surface, ball), law=Friction(coefficients=0.3)
+    )
+    material = make_material("linear-elastic", E=100.0, nu=0.0)
+    problem = Problem(model, {"slab": material}, [contact])
+    press = Step(
+        "press", 4, {"slab.bottom": dict.fromkeys("xyz", 0.0)}, motion={"ball": {"z": -0.1}}
+    )
+    states = list(Solver(problem, [press], strategy="condensed").run())
+    assert [one.behind for one in states] == [()] * 4
+
+
 @pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
 def test_a_block_that_sinks_in_is_not_done(strategy: str) -> None:
     """A force of 0.4 on a block of unit size; a penalty balances it 0.8 behind its master."""

@@ -312,7 +312,12 @@ class Problem(ReportedSystem):
 
     @override
     def behind_a_master(self, x: Vec) -> Culprit | None:
-        return self.sides.objection(self.reduction.nodal(x), self.reduction.whole)
+        known, sides = self.reduction, self.sides
+        found = sides.objection(known.nodal(x), known.whole)
+        if known.whole or not (found or sides.partly):
+            return found
+        # where a body is dented, a rigid one that goes with what can be touched lies elsewhere
+        return sides.objection(known.displacement(x))
 
     def turned(self, x: Vec) -> dict[str, BodyRotation]:
         """How far bodies at small strain have turned in a state in equilibrium, by name."""

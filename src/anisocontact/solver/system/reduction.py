@@ -27,6 +27,10 @@ class Reduction(Protocol):
         """Displacement of the local nodes, true where bodies can be touched, (nodes, 3), length."""
         ...
 
+    def displacement(self, x: Vec) -> Floats:
+        """Displacement of the local nodes in a trial state in equilibrium, (nodes, 3), length."""
+        ...
+
     def pending(self) -> Arrays:
         """What `recover` needs beside the accepted state, at the nodes; none if it is up to date.
 

@@ -44,6 +44,10 @@ class Whole:
         self._system.evaluate_at(x)
         return self._bodies.nodal
 
+    def displacement(self, x: Vec) -> Floats:
+        """As of `Reduction`."""
+        return self.nodal(x)
+
     def pending(self) -> Arrays:
         """As of `Reduction`."""
         return self._pending

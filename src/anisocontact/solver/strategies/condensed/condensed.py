@@ -209,7 +209,7 @@ class Condensed:
         )
 
     def displacement(self, x: Vec) -> Floats:
-        """Displacement of all nodes in a trial state in equilibrium, (nodes, 3), length."""
+        """As of `Reduction`."""
         state = self._trial(x)
         self._whole = (state, self._solved(state, x))
         return self._whole[1].reshape(-1, 3)
