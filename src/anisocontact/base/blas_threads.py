@@ -6,11 +6,11 @@ import ctypes
 import os
 from collections.abc import Callable, Iterator, MutableMapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 from anisocontact.base.processes import launched
-from anisocontact.base.records import dataclass
 
 #: Number of threads of OpenBLAS, by the first of these that is set.
 _NUMBER = ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 
 #: Difference between where something is and where its amplitude begins that is round-off, over

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 
 #: Angle by which normal, axes of adhesion or slave may turn along a step at a point in contact,

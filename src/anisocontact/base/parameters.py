@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import reprlib
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, SupportsFloat, TypeGuard
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.words import meant
 
 _SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}

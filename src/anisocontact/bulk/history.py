@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
@@ -11,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
-from anisocontact.base.records import dataclass
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.mesh import Idealisation, Model

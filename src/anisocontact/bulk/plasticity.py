@@ -11,13 +11,13 @@ each point, because M is diagonal in a basis of five tensors that does not chang
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hardening import HARDENING, check_recovery, make_hardening

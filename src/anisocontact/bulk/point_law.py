@@ -8,14 +8,13 @@ stresses and their derivatives, which stand in the forms as values at these poin
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import ufl
-from anisocontact.base.records import dataclass
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.bulk.materials import constant, small_strain

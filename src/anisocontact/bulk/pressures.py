@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -36,7 +37,6 @@ from anisocontact.base.fenicsx import (
     ufl,
 )
 from anisocontact.base.form_matrix import add_matrix
-from anisocontact.base.records import dataclass
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.volume import volume_of
 from anisocontact.mesh import Model

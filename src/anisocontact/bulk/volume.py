@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from anisocontact.base.fenicsx import ufl
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

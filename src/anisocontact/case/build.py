@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,6 @@ import numpy as np
 from anisocontact.base.errors import InputError, ModelWarning, within
 from anisocontact.base.fenicsx import MPI
 from anisocontact.base.limits import Limits
-from anisocontact.base.records import dataclass
 from anisocontact.bulk import materials
 from anisocontact.case import objects
 from anisocontact.case.amplitudes import times

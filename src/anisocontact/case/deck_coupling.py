@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.case.deck_contact import SKIN
 from anisocontact.case.deck_tools import Tools
 from anisocontact.mesh.arrays import MeshArrays

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.case.deck_contact import DeckContacts, table_lines
 from anisocontact.case.deck_coupling import Couplings, of_ideal
 from anisocontact.case.deck_cyclic import Sectors

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic import GetJsonSchemaHandler
@@ -11,7 +12,6 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Parameter
 
 #: Written instead of a stiffness that the run is to choose.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from anisocontact.base import registry
 from anisocontact.base.amplitudes import amplitudes
 from anisocontact.base.machine import out_of_memory
 from anisocontact.base.paths import paths
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import strategies
 from anisocontact.case.amplitudes import PYTHON

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import signal
 import traceback
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.machine import lack
-from anisocontact.base.records import dataclass
 from anisocontact.base.signals import interrupt, on_signals
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints

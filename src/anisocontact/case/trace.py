@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,7 +11,6 @@ from typing import Annotated, Any
 from pydantic import Field, ValidationError, create_model
 
 from anisocontact.base.errors import InputError, within
-from anisocontact.base.records import dataclass
 from anisocontact.case import objects
 from anisocontact.case.contact_laws import laws
 from anisocontact.case.quantity import AUTO, number

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry
 from anisocontact.case.quantity import line, shown, word
 from anisocontact.case.registered import Registered

@@ -12,10 +12,11 @@ that is closest as seen along n.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
 from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Self, override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Floats, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
 from anisocontact.interface import SlaveSurface

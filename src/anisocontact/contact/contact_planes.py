@@ -15,14 +15,13 @@ nodes, so that history is transported and tangents are exact as on any facet.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.plane_axes import (
     CarriedAxes,
     TurnedTangents,

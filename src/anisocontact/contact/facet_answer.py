@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Protocol
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import Couplings

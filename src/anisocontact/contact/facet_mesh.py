@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -10,7 +11,6 @@ import numpy as np
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
-from anisocontact.base.records import dataclass
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sweep import Sweep
 from anisocontact.surfaces.facets import outward_flips

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners, outward_normals
 from anisocontact.contact.near import Near
 from anisocontact.contact.sharp_edges import SMOOTH

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import OPEN
 from anisocontact.interface import Response, State
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.contact.master import Master
 from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State

@@ -15,13 +15,12 @@ with 1e-4 of the layer: beyond that rounding is all that is gained.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import OPEN
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.multipliers import RATIO, ContactTrial

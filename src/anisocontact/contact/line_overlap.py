@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

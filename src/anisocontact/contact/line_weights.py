@@ -13,11 +13,11 @@ which a rule on the interval integrates exactly.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_overlap import Number, Overlap
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes

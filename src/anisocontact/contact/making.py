@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 import numpy as np
@@ -12,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
-from anisocontact.base.records import dataclass
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.facet_master import FacetMaster

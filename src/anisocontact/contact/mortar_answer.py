@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import SLIP
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite
 from anisocontact.contact.history import Snapshot

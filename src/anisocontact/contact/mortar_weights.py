@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Protocol
 
@@ -11,7 +12,6 @@ import numpy as np
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_weights import line_weights

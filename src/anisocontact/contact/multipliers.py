@@ -11,13 +11,13 @@ the displacements in one Newton iteration, `Uzawa` holds them while Newton's met
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import OPEN, STICK
 from anisocontact.contact.frames import Frames
 from anisocontact.interface import VECTOR_FORMS, ContactLaw, Interface, Response, State

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Ints, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.surfaces.facets import FacetSets
 
 

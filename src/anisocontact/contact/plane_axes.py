@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +12,6 @@ import scipy
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, geometry, scalar_element
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 
 #: Nodes of rows and columns, (p, r) and (p, c), -1 for none, and blocks (p, 3 r, 3 c), or one 3 x 3

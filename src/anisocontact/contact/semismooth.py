@@ -14,12 +14,12 @@ What the derivative is multiplied with enters no state that is evaluated.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import OPEN, STICK
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.master import Linear

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -13,7 +13,6 @@ import numpy as np
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetRule,

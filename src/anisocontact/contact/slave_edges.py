@@ -7,13 +7,12 @@ revolution has one as well.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, counting

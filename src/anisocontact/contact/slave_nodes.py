@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, override
 
 import numpy as np
@@ -12,7 +12,6 @@ from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.base.peaks import PEAK
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetShapes,

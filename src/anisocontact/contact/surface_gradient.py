@@ -8,12 +8,13 @@ the reference configuration nothing is averaged.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.arrays import connected
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface

@@ -15,7 +15,7 @@ then said of what it is turned to, with `Q u_k` in the place of `u_k`.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -23,7 +23,6 @@ import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facing import facing, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh import Model

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 
 #: Cosine, and distance over that from the origin, by which lines that are one may differ.
 SAME_LINE = 1e-9

@@ -8,13 +8,12 @@ near, or the other side. Both are in balance, and neither can be.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.records import dataclass
 from anisocontact.rigid.rotation import rotation, rotation_vector
 
 #: Cosine of the normals of slave and master above which they point the same way.

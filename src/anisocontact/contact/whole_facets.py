@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Ints
-from anisocontact.base.records import dataclass
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.mesh.split import Route, Split

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, cast, override
 
@@ -13,7 +13,6 @@ import numpy as np
 from anisocontact import __version__
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.whole_files import replacing
 from anisocontact.interface import FAILURE, SlaveSurface, State
 from anisocontact.interface.contact_law import FacetBatch

@@ -7,11 +7,12 @@ what is soft stays as it is, what is stiff becomes 1/c.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.laws import Adhesion
 
 

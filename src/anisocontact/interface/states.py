@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,6 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.array_types import Codes, Flags, Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 
 #: What could not be done at a point, by its failure code.
 FAILURE = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,7 +11,6 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

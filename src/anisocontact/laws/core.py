@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy.typing as npt
 
@@ -16,7 +17,6 @@ from anisocontact.anisotropy import (
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed

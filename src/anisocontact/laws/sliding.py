@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,7 +11,6 @@ from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import default_threads
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.split import Route, Split, share_of
 
 # Vertices of the facets of a cell, in DOLFINx (tensor) order.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Protocol
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays, face_mesh, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks

@@ -7,13 +7,13 @@ Format: the keyword reference of either; names and keywords do not tell small le
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 
 #: How deep files may include others.
 DEPTH = 10

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_profiles import ANALYTIC, Profile, profile_of
 from anisocontact.mesh.deck_supports import supported_nodes

@@ -8,13 +8,12 @@ the generator of a cylinder is against the third axis.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.deck import Card, real
 
 #: Kinds of them.

@@ -8,12 +8,12 @@ towards the first point, the third normal to the plane with the second.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.deck import Card, real
 
 #: Names of supports in the place of components.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,7 +21,6 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -12,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 
 #: A side of the unit cube: axis and end (0: low, 1: high).
 type Side = tuple[int, int]

@@ -7,7 +7,7 @@ reads what it writes with NumPy alone. Format: https://gmsh.info/doc/texinfo/gms
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.split import Route, Split, share_of
 from anisocontact.mesh.stream import FLOAT, SIZE, MshError, Stream
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Parameter
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -15,7 +15,6 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_nodes
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays

@@ -11,13 +11,13 @@ and k P (aim - x) in place of P (R + F) where the foot is prescribed.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.interface import FAILURE, Response, State
 from anisocontact.point.device import Action, Device
 from anisocontact.point.foot import Foot, foot

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.surfaces import PROJECTION_STATUS, Surface
 
 # Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.

@@ -13,6 +13,7 @@ import os
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,6 @@ from numpy.lib.recfunctions import repack_fields
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.whole_files import replacing
 from anisocontact.mesh import Model
 from anisocontact.results.files import Disk

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 
 #: Share of the nodes that the first of the ways to cut has to leave; else the one that leaves most.
 ENOUGH = 0.45

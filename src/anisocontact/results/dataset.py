@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from base64 import b64decode, b64encode
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 
 type Arrays = Mapping[str, npt.NDArray[Any]]
 

@@ -10,6 +10,7 @@ import json
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import GREY
-from anisocontact.base.records import dataclass
 from anisocontact.results.cut import Cut, cut_of
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import closest_cells, fem, reference_place, scalar_element
-from anisocontact.base.records import dataclass
 from anisocontact.results.history import HistoryTable
 from anisocontact.results.paraview import BodyGrid
 from anisocontact.results.quantities import NODE, quantities

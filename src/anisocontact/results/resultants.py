@@ -7,6 +7,7 @@ its nodes are in the mesh: moments are taken there.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
-from anisocontact.base.records import dataclass
 from anisocontact.bulk import small_strain
 from anisocontact.solver import Problem
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -10,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
 from anisocontact.results.resultants import Resultant, resultant

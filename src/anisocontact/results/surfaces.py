@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.anisotropy import DirectionField
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons
 from anisocontact.results.quantities import PATCH, arrays

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.rigid.body import RigidBody

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 
 import numpy.typing as npt
 
@@ -11,7 +12,6 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Codes, Floats
 from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 
 #: Number of nodes of each topology. Nodes are in the order of DOLFINx: vertices (0,0), (1,0), (0,1)
 #: of a triangle and (0,0), (1,0), (0,1), (1,1) of a quadrilateral, then edges, then the interior.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -12,7 +12,6 @@ from anisocontact import _core
 from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import blocks
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

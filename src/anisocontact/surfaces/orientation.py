@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Locals
-from anisocontact.base.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from anisocontact.base.cells import IN_PLANE
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.ring import ZONES, RingSpec

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block, Side, focused
 from anisocontact.mesh.shapes.shape import (

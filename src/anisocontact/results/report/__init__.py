@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.figure_style import save
-from anisocontact.base.records import dataclass
 from anisocontact.results.deformed import SHOWN
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import energies_by_name

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.records import dataclass
 from anisocontact.results.dataset import DataSet
 
 #: Share of the size of an outline by which a coordinate may turn back as rounding does.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,6 @@ from matplotlib.colors import ListedColormap
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.figure_style import STATUS_COLOURS
 from anisocontact.base.peaks import PEAK
-from anisocontact.base.records import dataclass
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.report.contour import Contour, contour_of
 from anisocontact.results.report.facet_map import FacetMap, polygons_of

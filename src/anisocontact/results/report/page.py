@@ -5,11 +5,11 @@ from __future__ import annotations
 import base64
 import html
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from anisocontact.base.errors import printable
-from anisocontact.base.records import dataclass
 from anisocontact.results.report.labels import in_units
 
 _STYLE = """

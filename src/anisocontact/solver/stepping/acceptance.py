@@ -8,9 +8,9 @@ increment is tried in another way or in smaller parts.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.solver.stepping.culprits import inverted_cells, strayed
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.contact.schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.base.until import Measure, Until
 from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal

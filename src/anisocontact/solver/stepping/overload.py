@@ -8,11 +8,11 @@ found, and Newton's method ends in whatever it meets first.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.system.problem import Problem

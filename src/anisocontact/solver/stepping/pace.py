@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from anisocontact.base.limits import Limits
-from anisocontact.base.records import dataclass
 
 #: What is left of a part that failed.
 CUT = 0.25

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, field
+from dataclasses import asdict, dataclass, field
 from typing import NoReturn
 
 import numpy as np
 
 from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
-from anisocontact.base.records import dataclass
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of

@@ -7,9 +7,9 @@ the slave turn along it, see `FOLLOWED`.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from anisocontact.base.limits import FOLLOWED
-from anisocontact.base.records import dataclass
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.strategies import AUTO, add_strategy, strategy_entry
 from anisocontact.solver.strategies.condensed.strategy import CondensedStrategy
 from anisocontact.solver.strategies.direct import DirectStrategy

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 import resource
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-
-from anisocontact.base.records import dataclass
 
 #: Bytes of an entry of LU of a whole system: double precision, and a quarter for MUMPS' workspace.
 _ENTRY = 1.25 * 8

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,7 +12,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
-from anisocontact.base.records import dataclass
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.strategies.database import Database, OptionValue

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import PETSc, Vec
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Entry
 from anisocontact.solver.strategies.database import OptionValue
 from anisocontact.solver.strategies.newton import NewtonResult

@@ -7,13 +7,13 @@ but for the forces inside the bodies, those of the contact unknowns alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.solver.system.fields import Fields
 from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.layout import Layout

@@ -17,6 +17,7 @@ dissipate it with the mean of the pressures of both ends.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -24,7 +25,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI
-from anisocontact.base.records import dataclass
 from anisocontact.base.statuses import OPEN
 from anisocontact.contact import Contact
 from anisocontact.contact.initial import OVERLAP

@@ -11,6 +11,7 @@ of a row counts as the force that it stands for.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, override
 
@@ -18,7 +19,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.base.records import dataclass
 from anisocontact.bulk import cell_size
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.system.force_balance import (

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 
 #: Share of `|diag(K) u|` and of `Term.lever` that is round-off of the forces.
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)

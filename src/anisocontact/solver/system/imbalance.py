@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from anisocontact.base.records import dataclass
+from dataclasses import dataclass
 
 #: Share of the work beyond which the residual is worth a warning.
 LARGE = 0.05

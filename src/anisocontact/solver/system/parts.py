@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, bare, small_strain
 from anisocontact.contact import Contact
 from anisocontact.contact.shared_nodes import mark_shared

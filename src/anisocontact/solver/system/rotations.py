@@ -8,7 +8,7 @@ is `cos(t) - 1` in the plane of the turn: a strain that is not there. At 1 degre
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import astuple
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -16,7 +16,6 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.fenicsx import MPI, Vec, basix, scalar_element
-from anisocontact.base.records import dataclass
 from anisocontact.bulk import Material, small_strain
 from anisocontact.mesh import Model
 

@@ -7,11 +7,11 @@ one that has been thrown through a thin plate is free of it. Such states are fou
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.solver.system.culprit import Culprit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import override
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.registry import Parameter
 from anisocontact.base.typed import typed
 from anisocontact.contact import facet_quadrature

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError, within
-from anisocontact.base.records import dataclass
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
 from anisocontact.solver.terms.step import Goal, Step

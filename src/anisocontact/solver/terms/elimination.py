@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.base.records import dataclass
 
 #: Share of a direction that counts as none of it along an axis.
 NO_SHARE = 1e-9

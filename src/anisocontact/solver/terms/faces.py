@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec, fem
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.bulk import Material, small_strain
 from anisocontact.contact.facet_mesh import facet_nodes

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
-from anisocontact.base.records import dataclass
 from anisocontact.contact import Contact
 from anisocontact.mesh import Idealisation, Model
 from anisocontact.mesh.idealisation import SOLID

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cylinders import ACROSS, Cylinders, Guide

@@ -7,11 +7,11 @@ goes to the rows of the rigid body, and the row keeps nothing but its constraint
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
-from anisocontact.base.records import dataclass
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
 

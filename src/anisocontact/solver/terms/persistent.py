@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy.typing as npt
-
-from anisocontact.base.records import dataclass
 
 #: Arrays by name.
 type Arrays = dict[str, npt.NDArray[Any]]

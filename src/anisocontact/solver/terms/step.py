@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from anisocontact.base.course import Course, way_cut_off
 from anisocontact.base.errors import InputError
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian

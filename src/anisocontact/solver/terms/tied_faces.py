@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,6 @@ import scipy
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.records import dataclass
 from anisocontact.base.typed import typed
 from anisocontact.contact import facet_size
 from anisocontact.contact.reachable import NodePairs

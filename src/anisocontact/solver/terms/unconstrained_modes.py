@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import MPI, Mat
-from anisocontact.base.records import dataclass
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.free_modes import named
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.records import dataclass
 from anisocontact.solver.strategies.condensed.dense import blocks_times
 from anisocontact.solver.strategies.condensed.eliminate import WholeBorder, chosen
 from anisocontact.solver.strategies.condensed.factor import Eliminated

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.records import dataclass
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.terms.persistent import Arrays
 

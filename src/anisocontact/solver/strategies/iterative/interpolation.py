@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, release_unreferenced
-from anisocontact.base.records import dataclass
 from anisocontact.solver.strategies.iterative.split import (
     UnknownSplit,
     by_rows,

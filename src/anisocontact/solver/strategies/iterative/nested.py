@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
-from anisocontact.base.records import dataclass
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel, Inverse
 from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle
 from anisocontact.solver.strategies.iterative.factor import Factor
