@@ -1,4 +1,4 @@
-"""Entries that the factor of a body will have: MUMPS' analysis, of nodes instead of unknowns."""
+"""What a factor will take, before it is made: MUMPS' analysis, of nodes instead of unknowns."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from anisocontact.base.petsc_calls import call_petsc
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.mumps import reachable, unfactorised
 
-#: MUMPS: entries of the factor that its analysis expects, in millions where negative.
-_EXPECTED = 20
+#: MUMPS: what its analysis expects, entries of the factor, in millions where negative, and
+#: floating-point operations.
+_ENTRIES, _WORK = 20, 1
+#: Operations of LU of a block of n unknowns over n^2, where nobody tells: MUMPS, 35 to 40.
+_OPERATIONS = 37.0
 #: More than PETSc's `MatFactorInfo` has.
 _INFO = ctypes.c_double * 32
 
@@ -48,16 +51,37 @@ def factor_entries(graph: scipy.sparse.csr_array, border: Flags, unknowns: int) 
         return float(0.5 * unknowns**2)
     each = unknowns / count
     if not reachable():
-        return _typical(unknowns, each * np.count_nonzero(border))
-    given, order = aij(graph), PETSc.IS().createStride(count, comm=PETSc.COMM_SELF)
+        return _typical(unknowns) + 0.5 * float(each * np.count_nonzero(border)) ** 2
+    entries, _ = _expected(graph, border)
+    return float(each**2 * entries)
+
+
+def whole_factor(graph: scipy.sparse.csr_array, unknowns: int) -> tuple[float, float]:
+    """Entries of LU of a whole system and floating-point operations for it.
+
+    Args:
+        graph: Which nodes are coupled, (n, n).
+        unknowns: Unknowns of all nodes.
+    """
+    if not reachable():
+        return 2.0 * _typical(unknowns), _OPERATIONS * float(unknowns) ** 2
+    each = unknowns / graph.shape[0]
+    entries, operations = _expected(graph, np.zeros(graph.shape[0], dtype=np.bool_))
+    return 2.0 * each**2 * entries, 2.0 * each**3 * operations
+
+
+def _expected(graph: scipy.sparse.csr_array, border: Flags) -> tuple[float, float]:
+    """Entries of LDL^T of a graph, and operations, as MUMPS expects them."""
+    given, order = aij(graph), PETSc.IS().createStride(graph.shape[0], comm=PETSc.COMM_SELF)
     pc, factor = unfactorised(given, np.flatnonzero(border) if border.any() else np.array([0]))
     call_petsc("MatCholeskyFactorSymbolic", factor, given, order, ctypes.byref(_INFO()))
-    expected = float(factor.getMumpsInfog(_EXPECTED))
+    entries = float(factor.getMumpsInfog(_ENTRIES))
+    operations = float(factor.getMumpsRinfog(_WORK))
     for used in (pc, given, order):
         used.destroy()
-    return float(each**2 * (expected if expected >= 0.0 else -1e6 * expected))
+    return entries if entries >= 0.0 else -1e6 * entries, operations
 
 
-def _typical(unknowns: float, touched: float) -> float:
-    """The same of blocks of hexahedra, where nobody tells."""
-    return float(20.0 * unknowns ** (4.0 / 3.0) + 0.5 * touched**2)
+def _typical(unknowns: float) -> float:
+    """Entries of LDL^T of blocks of hexahedra, where nobody tells."""
+    return float(20.0 * unknowns ** (4.0 / 3.0))

@@ -18,13 +18,10 @@ from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse,
 from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
+from anisocontact.solver.strategies.costs import in_reads, sparse_reads
 
 #: PETSc: the Schur complement has a factor of its own; the place of "solve for a dense matrix".
 _FACTORED, _MAT_SOLVE = 1, 100
-#: Floating-point operations of a dense or sparse factorisation in the time in which a solution
-#: reads one entry of a factor, and solutions in the time in which fronts are put together: MUMPS
-#: and OpenBLAS on one core, in the plane and in space, 8,000 to 31,000 unknowns, within 10 %.
-_OPERATIONS_PER_ENTRY, _FILLING = 40.0, 5.0
 #: Share of the diagonal that the largest entry of a row has to change by to count.
 _CLEARLY = 0.1
 #: Rows that are put right in a factor of the border, at most, over all; a column of many costs this
@@ -112,8 +109,8 @@ class BorderedLU:
         self._given: Sparse | None = None
         handle, schur = schur_matrix(self._interior.factor, len(self.border))
         self._schur = schur.astype(np.float32)
-        self._per_solution = _OPERATIONS_PER_ENTRY * self._interior.entries
-        self.solutions_per_factor = self._interior.operations / self._per_solution + _FILLING
+        entries, operations = self._interior.entries, self._interior.operations
+        self.solutions_per_factor = sparse_reads(entries, operations) / entries
         self._diagonal = np.abs(np.diagonal(self._schur))
         self._shares: Sparse = whole(len(self.border))[0]
         call_petsc("MatFactorRestoreSchurComplement", self._interior.factor, None, _FACTORED)
@@ -140,10 +137,10 @@ class BorderedLU:
         cost, front = 0.0, self._front
         if front is None or not self._near(front, shares):
             front = self._front = self._eliminated(contact, shares, slaves)
-            self._updated, cost = None, front.operations / 2.0 / self._per_solution
+            self._updated, cost = None, self._in_solutions(front.operations / 2.0)
         self._shares = front.shares_with(shares) if front.shares.nnz else front.shares
         held = front.own(front.held(contact, shares)).astype(np.float32)
-        per_border = front.factor_operations / 2.0 / self._per_solution  # half: single precision
+        per_border = self._in_solutions(front.factor_operations / 2.0)  # half: single precision
         updated = self._updated
         if updated is not None:
             if self._changed(held - updated.held) < per_border:
@@ -163,6 +160,9 @@ class BorderedLU:
         self._updated = self._given = None  # gives the memory back
         stiff = self._diagonal[front.unknowns]
         return UpdatedFactor(front.own_factor(held), held, stiff, (0.0,), _CLEARLY)
+
+    def _in_solutions(self, operations: float) -> float:
+        return in_reads(operations) / self._interior.entries
 
     def _near(self, front: Front, shares: Sparse) -> bool:
         """Whether slave nodes are still about where they were when masters were eliminated."""

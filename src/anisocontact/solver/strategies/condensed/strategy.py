@@ -16,6 +16,7 @@ from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton
 from anisocontact.solver.strategies.condensed.reach import touched_nodes
+from anisocontact.solver.strategies.condensed.work import work
 from anisocontact.solver.strategies.costs import Condensable, Part, condensing_bytes, too_large
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
@@ -24,12 +25,6 @@ from anisocontact.solver.terms.supports import Supports
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
-#: Contact unknowns beyond which a dense factorisation takes longer than one of all n unknowns, over
-#: n^(2/3): work grows as their cube and as n^2. Runs of sheets of 12 x 12 to 30 x 30 hexahedra, one
-#: to four of them thick, take 0.7 times what they take with `direct` at 4.4 n^(2/3), a milled block
-#: 0.6 times at 4.8, sheets 1.1 to 2 times from 5.3 on and two to five times from 6.8 on. Where
-#: bodies are not linear a factor serves for less: 0.9 times at 3.8, 1.2 at 4.4, 1.35 at 4.9.
-WIDEST_LINEAR, WIDEST, POWER = 5.0, 4.5, 2.0 / 3.0
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
 #: Nodes opposite to the facets that meet at a slave node, over those of a facet: 16 for 4 where
@@ -81,12 +76,11 @@ class CondensedStrategy:
             )
         needed = condensing_bytes(_condensable(task, touched))
         yield from too_large(f"condensing on {count} contact unknowns", needed)
-        widest = WIDEST_LINEAR if problem.linear else WIDEST
-        if count > min(0.5 * problem.unknowns, widest * problem.unknowns**POWER):
-            yield (
-                f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
-                "all costs less than their dense matrix"
-            )
+        yield from self._slower(task, touched)
+
+    def losses(self, task: Task) -> Iterator[str]:
+        """Why `direct` takes less time for each correction, in a line."""
+        yield from self._slower(task, touched_nodes(task.problem, task.steps))
 
     def solver(
         self,
@@ -101,6 +95,15 @@ class CondensedStrategy:
             return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
+
+    def _slower(self, task: Task, touched: Flags) -> Iterator[str]:
+        problem = task.problem
+        if not work(problem, task.steps, touched).pays:
+            count = 3 * int(touched.sum())
+            yield (
+                f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
+                "all costs less than their dense matrix"
+            )
 
 
 def _condensable(task: Task, touched: Flags) -> Condensable:
