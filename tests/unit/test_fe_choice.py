@@ -128,22 +128,6 @@ def _sheet(fe: Any, thick: int, model: str) -> Problem:
     return Problem(mesh, {"block": make_material(model, E=1000.0, nu=0.3)}, [contact])
 
 
-@pytest.mark.parametrize("model", ["linear-elastic", "neo-hookean"])
-def test_condensed_of_a_sheet_is_direct(fe: Any, model: str) -> None:
-    """Asked for where its dense matrix only takes time it gives way, and says so.
-
-    Source: measured, linear sheets of 20 x 20 x 1 and 36 x 36 x 1 took 2.0 and 3.3 times the time
-    of `direct`, one of 26 x 26 x 2 at finite strain 1.4 times, a strip of 30 x 6 x 2 as well.
-    """
-    choice = _choice(_sheet(fe, 1, model), "condensed")
-    assert choice.name == "direct"
-    assert choice.reason == (
-        "1323 of 2646 unknowns are contact unknowns: a factorisation of all costs less than their "
-        "dense matrix ('condensed' asked for)"
-    )
-    assert _choice(_sheet(fe, 4, model), "condensed").name == "condensed"
-
-
 def test_solutions_count_where_bodies_are_not_linear(fe: Any) -> None:
     """A factor serves linear bodies for good, others are solved for by iterations.
 

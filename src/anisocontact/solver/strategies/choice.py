@@ -11,9 +11,9 @@ from anisocontact.solver.strategies.direct import DirectStrategy
 from anisocontact.solver.strategies.iterative.strategy import IterativeStrategy
 from anisocontact.solver.strategies.strategy import Strategy, Task
 
-_CONDENSED, _DIRECT = CondensedStrategy(), DirectStrategy()
+_DIRECT = DirectStrategy()
 #: All strategies, in the order in which `auto` asks them.
-_STRATEGIES: list[Strategy] = [_CONDENSED, _DIRECT, IterativeStrategy()]
+_STRATEGIES: list[Strategy] = [CondensedStrategy(), _DIRECT, IterativeStrategy()]
 
 
 def register_strategy[T: type[Strategy]](strategy: T) -> T:
@@ -61,9 +61,6 @@ class Choice:
 def choose(name: str, task: Task) -> Choice:
     """Take the strategy asked for, or the one that suits the problem.
 
-    Where `condensed` is asked for and contact unknowns are too many for it to pay, `direct` finds
-    the same corrections in less time and is taken.
-
     Args:
         name: Name of an entry of `base.strategies.strategies`.
         task: What is to be solved.
@@ -78,9 +75,6 @@ def choose(name: str, task: Task) -> Choice:
     against = next(strategy.obstacles(task), "")
     if against:
         raise InputError(f"{name!r} given, but {against}", "strategy")
-    slower = next(_CONDENSED.losses(task), "") if strategy is _CONDENSED else ""
-    if slower:
-        return Choice(_DIRECT, f"{slower} ({name!r} asked for)")
     return Choice(strategy, "asked for")
 
 

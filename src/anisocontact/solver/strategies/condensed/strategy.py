@@ -76,11 +76,11 @@ class CondensedStrategy:
             )
         needed = condensing_bytes(_condensable(task, touched))
         yield from too_large(f"condensing on {count} contact unknowns", needed)
-        yield from self._slower(task, touched)
-
-    def losses(self, task: Task) -> Iterator[str]:
-        """Why `direct` takes less time for each correction, in a line."""
-        yield from self._slower(task, touched_nodes(task.problem, task.steps))
+        if not work(problem, task.steps, touched).pays:
+            yield (
+                f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
+                "all costs less than their dense matrix"
+            )
 
     def solver(
         self,
@@ -95,15 +95,6 @@ class CondensedStrategy:
             return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
-
-    def _slower(self, task: Task, touched: Flags) -> Iterator[str]:
-        problem = task.problem
-        if not work(problem, task.steps, touched).pays:
-            count = 3 * int(touched.sum())
-            yield (
-                f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
-                "all costs less than their dense matrix"
-            )
 
 
 def _condensable(task: Task, touched: Flags) -> Condensable:
