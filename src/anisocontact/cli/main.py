@@ -140,6 +140,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return together.finish(_run(arguments))
 
 
+#: New objects after which garbage is looked for: of imports nothing is garbage.
+_IMPORTING, _RUNNING = 2_000_000, 100_000
+
+
 def command() -> int:
     """The command in a process of its own: garbage is looked for seldom, and not at the end.
 
@@ -150,9 +154,16 @@ def command() -> int:
     Returns:
         The exit code.
     """
-    gc.set_threshold(100_000)
+    gc.set_threshold(_IMPORTING)
     atexit.register(gc.freeze)
     return main()
+
+
+def imported() -> None:
+    """Look for garbage from now on among what is made from now on, in a process of the command."""
+    if gc.get_threshold()[0] == _IMPORTING:
+        gc.freeze()
+        gc.set_threshold(_RUNNING)
 
 
 def _run(arguments: argparse.Namespace) -> int:
