@@ -20,7 +20,7 @@ _STORED, _CHANGING = 12, 55
 #: and its factor, or what it is cut into where masters are eliminated.
 _DENSE = 2 * 4
 #: Libraries that are loaded when the first system is solved, bytes.
-_LIBRARIES = 13e6
+_LIBRARIES = 5e6
 #: Bytes of a block of the tangent of a contact, and of its entries in a sparse matrix.
 _BLOCK = 2 * 9 * 8
 #: Floating-point operations of a dense or sparse factorisation in the time in which a solution
@@ -136,7 +136,7 @@ def condensing_bytes(bodies: Condensable) -> float:
     Example:
         >>> pair = Condensable([Part(32856, 1311, 18e6), Part(22500, 1875, 15e6)], stored=4.5e6)
         >>> f"{condensing_bytes(pair) / 1e6:.0f} MB"
-        '569 MB'
+        '561 MB'
     """
     count = sum(part.touched for part in bodies.parts)
     whole = max(sum(part.unknowns for part in bodies.parts), 1)
