@@ -42,6 +42,14 @@ def test_what_petsc_refuses_late_is_one_line(
     assert PETSc.Options(PREFIX).getAll() == {}
 
 
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+def test_a_solver_that_never_asks_for_balance_is_refused(fe: Any, strategy: str) -> None:
+    """One linear solution, whose result PETSc calls converged whatever forces are left."""
+    said = "^options.snes_type: 'ksponly' given, which never asks whether forces are in balance$"
+    with pytest.raises(InputError, match=said):
+        warned(fe, strategy, {"snes_type": "ksponly"})
+
+
 def test_scripts_are_told_in_one_line() -> None:
     problem = script({"pc_factor_mat_solver_type": "mumpz"})
     with pytest.raises(InputError, match=r"^petsc_options: PETSc fails with .*: Could not locate"):

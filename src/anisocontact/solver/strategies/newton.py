@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
@@ -140,6 +141,9 @@ class Newton:
         options: PETSc options without prefix; those already in the PETSc database come first.
         on_iteration: Called with the number of the iteration and the residual.
 
+    Raises:
+        InputError: `snes_type` is one that takes any state for a solution.
+
     Example:
         A block that is held below and pushed from above; its equations are linear.
 
@@ -182,6 +186,9 @@ class Newton:
             self.snes.setFromOptions()
             self.snes.getKSP().setFromOptions()
             self.snes.getKSP().getPC().setFromOptions()
+        if self.snes.getType() == PETSc.SNES.Type.KSPONLY:
+            text = f"{self.snes.getType()!r} given, which never asks whether forces are in balance"
+            raise InputError(text, field="options.snes_type")
         self.snes.setConvergenceTest(self._converged)
         self.snes.setLineSearchPreCheck(self._damp)
         self._line_search = self.snes.getLineSearch().getType()
