@@ -10,6 +10,7 @@ import pytest
 import ufl
 from scipy.optimize import brentq
 
+from anisocontact.base.limits import Limits
 from anisocontact.bulk import (
     Material,
     UserEnergy,
@@ -18,7 +19,7 @@ from anisocontact.bulk import (
     materials,
 )
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import Problem, Solver, Step, StoppedError
 
 E, NU, STRETCH = 3.0, 0.3, 1.4
 G = E / (2 * (1 + NU))
@@ -155,6 +156,43 @@ def test_uniaxial_tension(name: str, cell: str, order: int) -> None:
     """Uniform stretch 1.4 with free sides: the closed form to 1e-8, the tolerance of Newton."""
     force, _ = _pulled(_made(name), cell, order)
     assert force == pytest.approx(_uniaxial(name), rel=1e-8)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+def test_states_without_an_energy_are_refused(strategy: str) -> None:
+    """Gent's rubber drawn past its lock: -G L/2 ln(1 - (I1 - 3)/L) has no value, its slope has.
+
+    Source: Gent, Rubber Chem. Technol. 69 (1996) 59. Forces balance there, with the stiffness of a
+    spring that pushes. Requirement: no such state is accepted, and the run says why it stops;
+    before the lock the force is that of the energy in uniform strain, to Newton's 1e-8.
+    """
+    lock = 0.2
+
+    def energy(f: object) -> object:
+        j = ufl.det(f)
+        first = j ** (-2 / 3) * ufl.inner(f, f)
+        return -G * lock / 2 * ufl.ln(1 - (first - 3) / lock) + BULK / 2 * (j - 1) ** 2
+
+    rubber = UserEnergy(energy, young=E)
+    held = {"bar.bottom": dict.fromkeys("xyz", 0.0)}
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    drawn = held | {"bar.top": {"x": 0.0, "y": 0.0, "z": 0.6}}
+    problem, steps = Problem(model, {"bar": rubber}), [Step("draw", 3, drawn)]
+    reasons: list[str] = []
+    forces = {}
+    with pytest.raises(StoppedError):
+        for one in Solver(problem, steps, limits=Limits(smallest=0.2), strategy=strategy).run(
+            on_cut=lambda cut: reasons.append(cut.reason)
+        ):
+            forces[1.0 + 0.6 * one.time] = one.reactions["bar.top"][2]
+    assert "the elastic energy is not a number" in reasons[0]
+    assert len(forces) >= 2
+    assert max(forces) < 1.4472  # where nothing is left of the lock
+    for stretch, force in forces.items():
+        shape, square = stretch ** (-2 / 3), stretch**2 + 2
+        left = 1 - (shape * square - 3) / lock
+        slope = shape * (stretch - square / (3 * stretch))
+        assert force == pytest.approx(G / left * slope + BULK * (stretch - 1), rel=1e-8)
 
 
 def test_user_materials() -> None:

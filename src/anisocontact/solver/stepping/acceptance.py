@@ -7,6 +7,7 @@ increment is tried in another way or in smaller parts.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -46,6 +47,18 @@ def cells_inside_out(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states with inverted cells."""
     found = inverted_cells(problem)
     return Refusal("cells are turned inside out", tuple(found)) if found else None
+
+
+def energy_is_none(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states beyond the last one that an energy knows, as past the lock of a rubber.
+
+    Its derivative may well be a number there: that of a logarithm is one for every argument.
+    """
+    if not problem.reduction.whole:  # of linear bodies
+        return None
+    if math.isfinite(problem.assembly.bodies.energy(problem.nodal)):
+        return None
+    return Refusal("the elastic energy is not a number: a body is strained further than it is for")
 
 
 def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
@@ -91,6 +104,7 @@ def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
 #: All checks, in the order in which they are asked.
 CHECKS: tuple[Check, ...] = (
     cells_inside_out,
+    energy_is_none,
     rigid_body_whirls,
     held_points_stray,
     behind_a_master,
