@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
-from anisocontact.base.import_hooks import alone, when_used
 
 try:
     from mpi4py import MPI  # isort: skip
@@ -32,17 +31,11 @@ try:
     import basix.ufl
     import ufl as _ufl
 
-    # what compiles forms is not needed where they are kept from an earlier run; of the package that
-    # writes C a name of a library is asked for at once
-    when_used("cffi")
-    alone("ffcx.codegeneration.C.file_template")
-
     import dolfinx
-    import dolfinx.cpp  # type: ignore[import-not-found]  # compiled
-    import dolfinx.la.petsc
     from dolfinx import cpp, fem, graph, io
     from dolfinx import la as _la
     from dolfinx import mesh as dmesh
+    from dolfinx.fem import petsc as fem_petsc
     from petsc4py import PETSc as _PETSc
 except ImportError as missing:
     raise ImportError(
@@ -370,8 +363,7 @@ def create_stiffness(form: Any) -> Mat:
     Rows that are emptied later keep their place in the pattern, so that one symbolic
     factorisation serves a whole run.
     """
-    matrix = cpp.fem.petsc.create_matrix(form._cpp_object, None)
-    assemble_into(matrix, form)
+    matrix = fem_petsc.assemble_matrix(form)
     matrix.assemble()
     matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
     return matrix
@@ -379,30 +371,25 @@ def create_stiffness(form: Any) -> Mat:
 
 def create_force(form: Any) -> Vec:
     """Vector for `assemble_force` of a linear form, with ghosts."""
-    dofs = form.function_spaces[0].dofmap
-    return dolfinx.la.petsc.create_vector([(dofs.index_map, dofs.index_map_bs)])
+    return fem_petsc.create_vector(form.function_spaces[0])
 
 
 def assemble_force(form: Any, out: Vec) -> None:
     """Write the vector of a linear form, ghosts added up, into one of `create_force`."""
     with out.localForm() as local:
         local.set(0.0)
-        fem.assemble_vector(local.array_w, form)
+    fem_petsc.assemble_vector(out, form)
     out.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
 
 
 def assemble_into(matrix: Mat, form: Any) -> None:
     """Add the matrix of a bilinear form to a matrix of its pattern; not assembled yet."""
-    # `dolfinx.fem.petsc` does the same, and parses C declarations when it is imported
-    given = fem.pack_constants(form), fem.pack_coefficients(form)
-    cpp.fem.petsc.assemble_matrix(matrix, form._cpp_object, *given, [])
-    matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
+    fem_petsc.assemble_matrix(matrix, form)
 
 
 def prescribe(residual: Vec, bcs: Sequence[Any], x: Vec) -> None:
     """Write `x - g` into the rows of the residual that Dirichlet conditions prescribe."""
-    for bc in bcs:
-        bc.set(residual.array_w, x.array_r, -1.0)
+    fem_petsc.set_bc(residual, bcs, x, -1.0)
 
 
 def prescribed_rows(bcs: Sequence[Any]) -> Locals:

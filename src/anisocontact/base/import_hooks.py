@@ -9,8 +9,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec, PathFinder
-from pathlib import Path
+from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 #: Modules that have moved into a package: their path of before and that of today. An import by the
@@ -77,55 +76,17 @@ def install() -> None:
         sys.meta_path[:0] = [LibrariesOfWheels(), MovedModules()]
 
 
-class _Later(ModuleType):
-    """A module that is executed when Python does not find something in it.
-
-    That of `importlib.util.LazyLoader` is executed by each `import` of it, before Python 3.12.3.
-    """
-
-    def __getattr__(self, name: str) -> object:
-        self.__class__ = ModuleType  # type: ignore[assignment]
-        spec = self.__spec__
-        if spec is None or spec.loader is None:
-            raise AttributeError(name)
-        if spec.submodule_search_locations is not None:
-            self.__path__ = spec.submodule_search_locations
-        spec.loader.exec_module(self)
-        return getattr(self, name)
-
-
 def when_used(name: str) -> None:
     """Let a module be executed when something of it is first used, not when it is imported.
 
     Args:
-        name: The module; if it is in a package, that is imported.
+        name: The module, in a package that is imported.
     """
     package, _, last = name.rpartition(".")
     spec = importlib.util.find_spec(name)
     if name in sys.modules or spec is None or spec.loader is None:
         return
+    spec.loader = importlib.util.LazyLoader(spec.loader)
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    module.__dict__.pop("__path__", None)  # what is in it is looked for: that is a use
-    module.__class__ = _Later
-    if package:
-        setattr(sys.modules[package], last, module)
-
-
-def alone(name: str) -> None:
-    """Import a module without what its package imports, which is done when that is asked for.
-
-    Then `from` finds the module, its package has no attribute of its name.
-
-    Args:
-        name: The module; if there is none of that name, nothing is done.
-    """
-    package = name.rpartition(".")[0]
-    outside, _, last = package.rpartition(".")
-    if name in sys.modules:
-        return
-    with contextlib.suppress(ImportError):
-        folders = [str(Path(folder, last)) for folder in importlib.import_module(outside).__path__]
-        spec = PathFinder.find_spec(name, folders)
-        if spec is not None and spec.loader is not None:
-            module = sys.modules[name] = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(module)
+    spec.loader.exec_module(module)
+    setattr(sys.modules[package], last, module)

@@ -140,10 +140,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return together.finish(_run(arguments))
 
 
-#: New objects after which garbage is looked for: of imports nothing is garbage.
-_IMPORTING, _RUNNING = 2_000_000, 100_000
-
-
 def command() -> int:
     """The command in a process of its own: garbage is looked for seldom, and not at the end.
 
@@ -154,16 +150,9 @@ def command() -> int:
     Returns:
         The exit code.
     """
-    gc.set_threshold(_IMPORTING)
+    gc.set_threshold(100_000)
     atexit.register(gc.freeze)
     return main()
-
-
-def imported() -> None:
-    """Look for garbage from now on among what is made from now on, in a process of the command."""
-    if gc.get_threshold()[0] == _IMPORTING:
-        gc.freeze()
-        gc.set_threshold(_RUNNING)
 
 
 def _run(arguments: argparse.Namespace) -> int:

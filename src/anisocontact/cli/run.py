@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from anisocontact.case import load
 from anisocontact.case.restart import checkpoint_of
-from anisocontact.cli.main import DONE, STOPPED, imported
+from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import Output, say
 from anisocontact.results import beside
 from anisocontact.results.files import check_folder
@@ -58,7 +58,6 @@ def _run(
     from anisocontact.cli.check import contents
     from anisocontact.cli.progress import progress_on
 
-    imported()
     built = build(file)
     for line in contents(built):
         say(line)
