@@ -128,6 +128,17 @@ def _sheet(fe: Any, thick: int, model: str) -> Problem:
     return Problem(mesh, {"block": make_material(model, E=1000.0, nu=0.3)}, [contact])
 
 
+def test_few_contact_unknowns_are_condensed_whatever_their_work(
+    fe: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The estimate takes it that all of them change, of those that a die passes over few do.
+
+    Source: measured, ironing takes 0.7 times the time of `direct` where the estimate says 1.6.
+    """
+    monkeypatch.setattr(strategy, "WIDE_LINEAR", 8.0)
+    assert _choice(_sheet(fe, 1, "linear-elastic")).name == "condensed"
+
+
 def test_solutions_count_where_bodies_are_not_linear(fe: Any) -> None:
     """A factor serves linear bodies for good, others are solved for by iterations.
 
