@@ -61,34 +61,11 @@ nb::tuple block_entries(const Nodes& row, const Nodes& column, const Numbers& nu
   return nb::make_tuple(numbers.array, columns.array, begin.array);
 }
 
-using ByColumns = nb::ndarray<double, nb::shape<-1, -1>, nb::f_contig, nb::device::cpu>;
-using GivenByColumns = nb::ndarray<const double, nb::shape<-1, -1>, nb::f_contig, nb::device::cpu>;
-
-/// Adds the lower triangle of a matrix to that of a larger one, at places that increase. The larger one
-/// is in three parts: the square of its first rows and columns, what is below that, and the rest.
-void add_lower(const GivenByColumns& given, const Nodes& place, const ByColumns& square,
-               const ByColumns& below, const ByColumns& rest) {
-  const std::size_t n = place.shape(0), first = square.shape(0), others = rest.shape(0);
-  const auto at = [&](std::size_t i) { return static_cast<std::size_t>(place.data()[i]); };
-  std::size_t inner = 0;  // how many places are among the first rows
-  while (inner < n && at(inner) < first) ++inner;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double* const from = given.data() + n * j;
-    const bool left = j < inner;
-    for (std::size_t i = j; i < inner; ++i) square.data()[first * at(j) + at(i)] += from[i];
-    double* const to =
-        left ? below.data() + others * at(j) : rest.data() + others * (at(j) - first);
-    for (std::size_t i = std::max(j, inner); i < n; ++i) to[at(i) - first] += from[i];
-  }
-}
-
 }  // namespace
 
 void bind_blocks(nb::module_& m) {
   m.def("block_entries", &block_entries, nb::arg("row"), nb::arg("column"), nb::arg("number"),
         nb::arg("size"));
-  m.def("add_lower", &add_lower, nb::arg("given"), nb::arg("place"), nb::arg("square"),
-        nb::arg("below"), nb::arg("rest"));
 }
 
 }  // namespace anisocontact::bindings

@@ -434,10 +434,3 @@ def plane_slopes(
 def block_entries(
     row: NDArray[numpy.int64], column: NDArray[numpy.int64], number: NDArray[numpy.int64], size: int
 ) -> Any: ...
-def add_lower(
-    given: NDArray[numpy.float64],
-    place: NDArray[numpy.int64],
-    square: NDArray[numpy.float64],
-    below: NDArray[numpy.float64],
-    rest: NDArray[numpy.float64],
-) -> None: ...

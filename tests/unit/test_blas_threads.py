@@ -62,27 +62,16 @@ def test_shared_work_has_two_threads_and_other_work_as_before(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Requirement: threads are given for the time of the block, also where it fails."""
-    numbers = [1]
-    monkeypatch.setattr(blas_threads, "_known", lambda: (numbers.append, lambda: numbers[-1]))
+    numbers: list[int] = []
+    monkeypatch.setattr(blas_threads, "_setter", lambda: numbers.append)
     with blas_threads.shared(blas_threads.LARGE):
-        assert numbers == [1]
+        assert numbers == []
     monkeypatch.setattr(blas_threads._GIVEN, "threads", 2)
     with blas_threads.shared(blas_threads.LARGE - 1):
-        assert numbers == [1]
+        assert numbers == []
     with pytest.raises(ZeroDivisionError), blas_threads.shared(blas_threads.LARGE):
         raise ZeroDivisionError
-    assert numbers == [1, 2, 1]
-
-
-def test_short_products_have_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Requirement: one thread for the time of the block, then as many as before; none of them set
-    anew where there is one already.
-    """
-    numbers = [4]
-    monkeypatch.setattr(blas_threads, "_known", lambda: (numbers.append, lambda: numbers[-1]))
-    with blas_threads.one_thread(), blas_threads.one_thread():
-        assert numbers == [4, 1]
-    assert numbers == [4, 1, 4]
+    assert numbers == [2, 1]
 
 
 def test_idle_threads_sleep() -> None:

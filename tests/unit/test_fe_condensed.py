@@ -9,8 +9,6 @@ import pytest
 import scipy.sparse
 from tests.unit.condensed_samples import condensation, matrix_of
 
-from anisocontact.bulk import LinearBulk, make_material
-from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Solver, Step
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
@@ -50,35 +48,6 @@ def test_partial_factor(way: Any) -> None:
         x = factor.interior(b)
         np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-13)
         assert not x[border].any()
-    factor.close()
-
-
-def test_partial_factor_of_a_body(way: Any) -> None:
-    """A body whose nodes have one to three unknowns, which are eliminated in many steps.
-
-    Required: S and a solution are those of the dense matrix to rounding, over its condition of
-    about 1e3.
-    """
-    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (7, 5, 6))})
-    stiffness = LinearBulk(
-        model, {"block": make_material("linear-elastic", E=1.0, nu=0.3)}
-    ).stiffness
-    starts, columns, values = stiffness.getValuesCSR()
-    whole = scipy.sparse.csr_array((values, columns, starts), (len(starts) - 1,) * 2)
-    free = np.ones(whole.shape[0], dtype=bool)
-    free.reshape(-1, 3)[model.facet_nodes("block.top")] = [False, True, True]
-    free.reshape(-1, 3)[model.facet_nodes("block.left")] = [True, False, False]
-    free.reshape(-1, 3)[model.facet_nodes("block.front")[:3]] = False
-    touched = np.zeros_like(free).reshape(-1, 3)
-    touched[model.facet_nodes("block.bottom")] = True
-    matrix, border = whole[free][:, free].tocsr(), np.flatnonzero(touched.reshape(-1)[free])
-    inside = np.setdiff1d(np.arange(matrix.shape[0]), border)
-    dense = matrix.toarray()
-    factor = way(matrix, border)
-    np.testing.assert_allclose(factor.schur, _schur(dense, border, inside), atol=1e-13)
-    b = np.random.default_rng(1).random((matrix.shape[0], 2))
-    x = factor.interior(b)
-    np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-11)
     factor.close()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable, Iterator, MutableMapping
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -20,9 +20,8 @@ _PATIENCE, _SHORTEST = "OPENBLAS_THREAD_TIMEOUT", "4"
 _MOST = 2
 #: Rows of a matrix whose factorisation threads share: it takes 0.02 s, many times what they wait.
 LARGE = 1500
-#: How names begin of what sets and tells the number of threads: in the wheels of SciPy, and in
-#: OpenBLAS as it is.
-_NAMES = ("scipy_openblas_", "openblas_")
+#: Names of what sets the number of threads: in the wheels of SciPy, and in OpenBLAS as it is.
+_SETTERS = ("scipy_openblas_set_num_threads", "openblas_set_num_threads")
 
 
 @dataclass
@@ -75,47 +74,27 @@ def shared(size: int) -> Iterator[None]:
     Args:
         size: Rows of a square matrix that is factorised or multiplied with as large ones.
     """
-    more = _GIVEN.threads > 1 and size >= LARGE
-    with _threads(_GIVEN.threads) if more else nullcontext():
-        yield
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Around many short products of SciPy: threads that were left as they are would wait."""
-    with _threads(1):
-        yield
-
-
-@contextmanager
-def _threads(count: int) -> Iterator[None]:
-    """Around work of SciPy with so many threads, if its BLAS is an OpenBLAS."""
-    known = _known()
-    if known is None:
+    change = _setter() if _GIVEN.threads > 1 and size >= LARGE else None
+    if change is None:
         yield
         return
-    change, tell = known
-    before = tell()
-    if before != count:
-        change(count)
+    change(_GIVEN.threads)
     try:
         yield
     finally:
-        if before != count:
-            change(before)
+        change(1)
 
 
 @cache
-def _known() -> tuple[Callable[[int], Any], Callable[[], int]] | None:
-    """What sets and tells the threads of the OpenBLAS that SciPy has; None with another BLAS."""
+def _setter() -> Callable[[int], Any] | None:
+    """What sets the number of threads of the OpenBLAS that SciPy has; None with another BLAS."""
     from scipy.linalg import _fblas
 
     library = ctypes.CDLL(_fblas.__file__)  # what it is linked to is looked through as well
-    for name in _NAMES:
-        if hasattr(library, f"{name}set_num_threads"):
-            found = (getattr(library, f"{name}{what}_num_threads") for what in ("set", "get"))
-            change, tell = found
-            return change, tell
+    for name in _SETTERS:
+        if hasattr(library, name):
+            found: Callable[[int], Any] = getattr(library, name)
+            return found
     return None
 
 

@@ -13,14 +13,18 @@ _ENTRY = 1.25 * 8
 #: Its entries for n unknowns of bodies in space over n^(4/3), the power of nested dissection
 #: [George 1973]. MUMPS, a block of 24 x 24 x 12 hexahedra (22,500 unknowns): 35.3.
 _WHOLE = 35.0
-#: Bytes for each entry of a stiffness: a sparse matrix; and what else Newton's method has where all
+#: Factor of MUMPS with its workspace over the entries, beside copies of the border: LDL^T by blocks
+#: (0.9 and 1.2 for two bodies of 22,500 and 36,963 unknowns), and LU.
+_WORK, _WORK_LU = 1.15, 1.3
+#: Bytes for each entry of a stiffness: a sparse matrix; what MUMPS is given, with its own copy of a
+#: triangle, 16 bytes for an entry of that, which stays; and what else Newton's method has where all
 #: of it changes.
-_STORED, _CHANGING = 12, 55
+_STORED, _GIVEN, _LEFT, _CHANGING = 12, 20, 8, 55
 #: Bytes for each entry of the dense matrix of all contact unknowns, in single precision: the matrix
 #: and its factor, or what it is cut into where masters are eliminated.
 _DENSE = 2 * 4
 #: Libraries that are loaded when the first system is solved, bytes.
-_LIBRARIES = 5e6
+_LIBRARIES = 13e6
 #: Bytes of a block of the tangent of a contact, and of its entries in a sparse matrix.
 _BLOCK = 2 * 9 * 8
 #: Floating-point operations of a dense or sparse factorisation in the time in which a solution
@@ -29,30 +33,6 @@ _BLOCK = 2 * 9 * 8
 _OPERATIONS_PER_ENTRY, _FILLING = 40.0, 5.0
 #: Share of the free memory that dense matrices or a factor may take.
 MEMORY_SHARE = 0.5
-
-
-@dataclass(frozen=True)
-class _Factor:
-    """Memory of a factorisation of which a border is left.
-
-    Attributes:
-        work: The factor over its entries, beside copies of the border.
-        stack: What is on its way besides, over the entries.
-        given: Bytes for each entry of the matrix while it is factorised.
-        left: Bytes of these that stay.
-    """
-
-    work: float
-    stack: float
-    given: float
-    left: float
-
-
-#: Dense fronts: squares where triangles are the factor, and zeros. Bodies of 6,000 to 37,000
-#: unknowns have 1.1 to 1.2 times the entries, sheets in the plane 1.4.
-_FRONTS = _Factor(work=1.2, stack=0.5, given=30, left=0)
-#: LU of MUMPS with its workspace, and a copy of it; its own copy of the matrix stays.
-_LU = _Factor(work=1.3, stack=1.0, given=20, left=8)
 
 
 def factor_bytes(unknowns: int) -> float:
@@ -127,8 +107,8 @@ class Condensable:
 def condensing_bytes(bodies: Condensable) -> float:
     """Most memory that a run takes to condense bodies and to solve for what is touched, bytes.
 
-    It is that in which the last of the large fronts is eliminated, or that in which the contact
-    unknowns have a dense factor beside those of all bodies.
+    It is that in which MUMPS has a front on its stack and a copy of its factor, or that in which
+    the contact unknowns have a dense factor beside those of all bodies.
 
     Args:
         bodies: What is to be condensed.
@@ -136,21 +116,20 @@ def condensing_bytes(bodies: Condensable) -> float:
     Example:
         >>> pair = Condensable([Part(32856, 1311, 18e6), Part(22500, 1875, 15e6)], stored=4.5e6)
         >>> f"{condensing_bytes(pair) / 1e6:.0f} MB"
-        '561 MB'
+        '619 MB'
     """
     count = sum(part.touched for part in bodies.parts)
     whole = max(sum(part.unknowns for part in bodies.parts), 1)
-    size, matrices, way, parts = 8, _STORED, _FRONTS, bodies.parts
+    size, matrices, work, parts = 8, _STORED, _WORK, bodies.parts
     if bodies.changing:
-        size, matrices, way = 4, _STORED + _CHANGING, _LU
+        size, matrices, work = 4, _STORED + _CHANGING, _WORK_LU
         parts = [Part(whole, count, 2.0 * sum(part.entries for part in parts))]
     most = kept = cut = 0.0
     for part in sorted(parts, key=lambda part: -part.unknowns):
         factor, border = size * part.entries, size * part.touched**2
         stored = bodies.stored * part.unknowns / whole
-        now = (way.work + way.stack) * factor + 2 * border + way.given * stored
-        most = max(most, kept + now)
-        kept += way.work * factor + border + way.left * stored
+        most = max(most, kept + (work + 1.0) * factor + 2 * border + _GIVEN * stored)
+        kept += work * factor + border + _LEFT * stored
         cut = _STORED * stored  # the heap still has it when the last body is done
     solving = kept + cut + _DENSE * count**2 + _BLOCK * bodies.blocks
     return _LIBRARIES + matrices * bodies.stored + max(most, solving)

@@ -9,14 +9,13 @@ from typing import override
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.solver.strategies.condensed import multifrontal, mumps, pardiso
+from anisocontact.solver.strategies.condensed import mumps, pardiso
 from anisocontact.solver.strategies.condensed.blocked import BlockedFactor
 from anisocontact.solver.strategies.condensed.factor import Eliminated, Way
 
 #: Name of each way, whether it is there, and who goes it.
 WAYS: tuple[tuple[str, Callable[[], bool], Way], ...] = (
     ("Pardiso of MKL", lambda: pardiso.routine() is not None, pardiso.PardisoFactor),
-    ("dense fronts", multifrontal.reachable, multifrontal.MultifrontalFactor),
     ("MUMPS", mumps.reachable, mumps.MumpsFactor),
     ("PETSc, column by column", lambda: True, BlockedFactor),
 )
