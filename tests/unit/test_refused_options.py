@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
@@ -16,7 +17,8 @@ from tests.unit.test_unread_options import script
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.solver import Solver
+from anisocontact.bulk import make_material
+from anisocontact.solver import ElasticSupport, Problem, Solver, Step
 
 PREFIX = "unread_"
 WRONG = [
@@ -48,6 +50,29 @@ def test_a_solver_that_never_asks_for_balance_is_refused(fe: Any, strategy: str)
     said = "^options.snes_type: 'ksponly' given, which never asks whether forces are in balance$"
     with pytest.raises(InputError, match=said):
         warned(fe, strategy, {"snes_type": "ksponly"})
+
+
+def test_half_of_a_tangent_is_refused(fe: Any) -> None:
+    """Friction makes a tangent unsymmetric [Wriggers 2006, 9.5], and so do prescribed rows."""
+    said = "^options.pc_type: 'cholesky' given, which reads half of the tangent, and rows of "
+    with pytest.raises(InputError, match=said):
+        warned(fe, "direct", {"pc_type": "cholesky"})
+
+
+def test_half_of_a_symmetric_tangent_will_do(fe: Any) -> None:
+    """A block on a frictionless elastic bed: Cholesky's factor gives what LU gives, to rounding."""
+    model = fe.block(fe.interface(), cells=(2, 2, 2)).problem.model
+    materials = {"block": make_material("linear-elastic", E=100.0, nu=0.3)}
+    step = Step("push", 1, {}, traction={"block.top": {"x": 0.1, "z": -1.0}})
+    bed = [ElasticSupport("block.bottom", normal=50.0, tangential=20.0)]
+    found = []
+    for kind in ("lu", "cholesky"):
+        problem = Problem(model, materials, attached=bed)
+        (accepted,) = Solver(problem, [step], options={"pc_type": kind}, strategy="direct").run()
+        assert accepted.iterations == 1
+        found.append(problem.u.x.array.copy())
+    assert np.abs(found[0]).max() > 1e-3
+    assert np.allclose(*found, rtol=0.0, atol=1e-12)
 
 
 def test_scripts_are_told_in_one_line() -> None:

@@ -44,6 +44,9 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
+#: Preconditioners that read one triangle of a matrix, and how far entries may differ from those of
+#: the other one, over the largest sum of a row: rounding of what is symmetric.
+HALVES, ASYMMETRY = (PETSc.PC.Type.CHOLESKY, PETSc.PC.Type.ICC), 1e-8
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
 
@@ -285,6 +288,7 @@ class Newton:
             grown = self._problem.tangent(x, matrix)
         if grown:
             self._outgrow()
+        _check_halves(self.snes.getKSP().getPC(), matrix)
 
     def _outgrow(self) -> None:
         """The pattern of the tangent has grown."""
@@ -374,3 +378,21 @@ class Newton:
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")
         return text.format(n=self.snes.getIterationNumber(), r=last)
+
+
+def _check_halves(pc: PETSc.PC, matrix: Mat) -> None:
+    """Refuse a preconditioner for symmetric matrices where the tangent is none.
+
+    Raises:
+        InputError: The other triangle has other entries.
+    """
+    if pc.getType() not in HALVES:
+        return
+    size = matrix.norm(PETSc.NormType.NORM_INFINITY)
+    if np.isfinite(size) and not matrix.isSymmetric(ASYMMETRY * size):
+        text = (
+            f"{pc.getType()!r} given, which reads half of the tangent, and rows of prescribed "
+            "displacements, friction and loads that follow have other halves; allowed: lu, or "
+            "another one for any matrix"
+        )
+        raise InputError(text, field="options.pc_type")
