@@ -24,7 +24,7 @@ from anisocontact.solver.strategies.condensed import strategy
 from anisocontact.solver.strategies.condensed.analysis import node_graph, whole_factor
 from anisocontact.solver.strategies.condensed.reach import touched_nodes
 from anisocontact.solver.strategies.condensed.work import work
-from anisocontact.solver.strategies.costs import in_reads, sparse_reads
+from anisocontact.solver.strategies.costs import factorisation_cost, operation_cost
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 
@@ -98,7 +98,7 @@ def test_work_is_that_of_what_changes(mortar: bool, changing: int) -> None:
     problem = _rods(mortar)
     touched = touched_nodes(problem, [PRESS])
     assert 3 * np.count_nonzero(touched) == 3 * (61 + 51) * 3
-    assert work(problem, [PRESS], touched).dense == pytest.approx(in_reads(changing**3 / 3.0))
+    assert work(problem, [PRESS], touched).dense == pytest.approx(operation_cost(changing**3 / 3.0))
 
 
 def test_a_factorisation_of_all_has_what_contact_couples() -> None:
@@ -109,7 +109,7 @@ def test_a_factorisation_of_all_has_what_contact_couples() -> None:
     """
     problem = _rods(True)
     touched = touched_nodes(problem, [PRESS])
-    alone = sparse_reads(*whole_factor(node_graph(problem.bulk.stiffness), problem.unknowns))
+    alone = factorisation_cost(*whole_factor(node_graph(problem.bulk.stiffness), problem.unknowns))
     assert work(problem, [PRESS], touched).sparse > 1.3 * alone
 
 

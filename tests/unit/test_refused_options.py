@@ -52,14 +52,14 @@ def test_a_solver_that_never_asks_for_balance_is_refused(fe: Any, strategy: str)
         warned(fe, strategy, {"snes_type": "ksponly"})
 
 
-def test_half_of_a_tangent_is_refused(fe: Any) -> None:
+def test_a_factorisation_of_symmetric_matrices_is_refused(fe: Any) -> None:
     """Friction makes a tangent unsymmetric [Wriggers 2006, 9.5], and so do prescribed rows."""
-    said = "^options.pc_type: 'cholesky' given, which reads half of the tangent, and rows of "
+    said = "^options.pc_type: 'cholesky' given, which needs a symmetric tangent: prescribed "
     with pytest.raises(InputError, match=said):
         warned(fe, "direct", {"pc_type": "cholesky"})
 
 
-def test_half_of_a_symmetric_tangent_will_do(fe: Any) -> None:
+def test_cholesky_of_a_symmetric_tangent_is_lu(fe: Any) -> None:
     """A block on a frictionless elastic bed: Cholesky's factor gives what LU gives, to rounding."""
     model = fe.block(fe.interface(), cells=(2, 2, 2)).problem.model
     materials = {"block": make_material("linear-elastic", E=100.0, nu=0.3)}

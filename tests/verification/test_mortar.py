@@ -46,18 +46,14 @@ def _law() -> ContactLaw:
     return ContactLaw(NormalLaw(penalty=PENALTY), adhesion, friction)
 
 
+def _mortar(model: Model, master: Any = "lower.top", **options: Any) -> Contact:
+    return Contact(model, "upper.bottom", master, _law(), mortar=True, **options)
+
+
 def _pressed(model: Model, augmented: bool) -> tuple[Contact, Floats, float]:
     """Uniform compression; the contact, the displacement and the overlap of a penalty."""
     augmentation = Augmentation(tangential=False) if augmented else None
-    contact = Contact(
-        model,
-        "upper.bottom",
-        "lower.top",
-        _law(),
-        mortar=True,
-        current_area=False,
-        augmentation=augmentation,
-    )
+    contact = _mortar(model, current_area=False, augmentation=augmentation)
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"upper": elastic, "lower": elastic}, [contact])
     held: dict[str, Any] = {f"{body}.left": {"x": 0.0} for body in ("upper", "lower")}
@@ -169,7 +165,7 @@ def test_tangent(master: str, cell: str, order: int, current_area: bool) -> None
 def test_forces_balance() -> None:
     """Forces on both bodies add up to nothing: 1e-12, whatever is covered and however warped."""
     model = offset_pair("hexahedron", 1)
-    contact = Contact(model, "upper.bottom", "lower.top", _law(), mortar=True)
+    contact = _mortar(model)
     force = force_of(contact, slid(contact, model))
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
 
@@ -179,9 +175,7 @@ def test_forces_balance() -> None:
 def test_area(master: str, current_area: bool, area: float) -> None:
     """A slave stretched by 1.1 and 1.2: its area of now or of the reference, whole, 1e-12."""
     model = offset_pair("hexahedron", 1)
-    contact = Contact(
-        model, "upper.bottom", _on(master), _law(), mortar=True, current_area=current_area
-    )
+    contact = _mortar(model, _on(master), current_area=current_area)
     x = model.space.tabulate_dof_coordinates()
     u = np.zeros_like(x)
     block = np.unique(model.space.dofmap.list[model.cells("upper")])
@@ -202,7 +196,7 @@ def test_rotation() -> None:
     turn = Rotation.from_euler("xyz", (20.0, -50.0, 70.0), degrees=True)
     forces = []
     for rotation in (Rotation.identity(), turn):
-        contact = Contact(model, "upper.bottom", "lower.top", _law(), mortar=True)
+        contact = _mortar(model)
         contact.update(np.zeros_like(x), 1.0)
         contact.commit()
         u = slid(contact, model)
@@ -267,14 +261,7 @@ def _dragged() -> tuple[Problem, list[Step]]:
     upper = BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 1))
     lower = BoxSpec((-0.4, 0, -0.5), (2, 2, 0.5), (5, 5, 1))
     model = build_box({"upper": upper, "lower": lower})
-    contact = Contact(
-        model,
-        "upper.bottom",
-        "lower.top",
-        _law(),
-        mortar=True,
-        augmentation=Augmentation(),
-    )
+    contact = _mortar(model, augmentation=Augmentation())
     steel = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"upper": steel, "lower": steel}, [contact])
     still = {"x": 0.0, "y": 0.0}

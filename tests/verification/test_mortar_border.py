@@ -38,13 +38,13 @@ def _pressed(model: Any, *sides: str) -> tuple[Contact, int, int]:
     return contact, sum(one.iterations for one in run), len(cuts)
 
 
-@pytest.mark.parametrize("n", [4, 8])
-def test_nodes_on_the_border_of_the_master(n: int) -> None:
+@pytest.mark.parametrize(("n", "bound"), [(4, 0.01), (6, 0.005), (8, 0.005)])
+def test_nodes_on_the_border_of_the_master(n: int, bound: float) -> None:
     """A block on a larger base with nodes below its edges, the base as the slave.
 
     Source: the same pair with the sides swapped, where no facet of the slave is covered in part.
-    Requirement: no cut, ten iterations, the same force within 1 % (0.5 % is asked for at twelve
-    facets). As the surfaces spread, strips of 1e-3 of a facet come to be covered.
+    Requirement: no cut, ten iterations, the same force within 0.5 %, 1 % where four facets
+    are an edge. As the surfaces spread, strips of 1e-3 of a facet come to be covered.
     """
     block = BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, 2))
     base = BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (3 * n // 2, 3 * n // 2, 2))
@@ -55,7 +55,7 @@ def test_nodes_on_the_border_of_the_master(n: int) -> None:
         assert cuts == 0
         assert iterations <= 10
         forces.append(abs(contact.resultant()[0][2]))
-    assert forces[0] == pytest.approx(forces[1], rel=0.01)
+    assert forces[0] == pytest.approx(forces[1], rel=bound)
 
 
 def _punched(offset: float, n: int) -> float:

@@ -49,8 +49,8 @@ def cells_inside_out(problem: Problem, _: Vec) -> Refusal | None:
     return Refusal("cells are turned inside out", tuple(found)) if found else None
 
 
-def energy_is_none(problem: Problem, _: Vec) -> Refusal | None:
-    """Refuse states beyond the last one that an energy knows, as past the lock of a rubber.
+def energy_not_a_number(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states beyond the range of an energy, as past the lock of a rubber.
 
     Its derivative may well be a number there: that of a logarithm is one for every argument.
     """
@@ -58,7 +58,9 @@ def energy_is_none(problem: Problem, _: Vec) -> Refusal | None:
         return None
     if math.isfinite(problem.assembly.bodies.energy(problem.nodal)):
         return None
-    return Refusal("the elastic energy is not a number: a body is strained further than it is for")
+    return Refusal(
+        "the elastic energy is not a number: a body is strained beyond the range of its law"
+    )
 
 
 def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
@@ -104,7 +106,7 @@ def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
 #: All checks, in the order in which they are asked.
 CHECKS: tuple[Check, ...] = (
     cells_inside_out,
-    energy_is_none,
+    energy_not_a_number,
     rigid_body_whirls,
     held_points_stray,
     behind_a_master,

@@ -48,8 +48,8 @@ def factor_bytes(unknowns: int) -> float:
     return _ENTRY * _WHOLE * _n43(unknowns)
 
 
-def in_reads(operations: float) -> float:
-    """Time of floating-point operations of a factorisation, in entries that a solution reads.
+def operation_cost(operations: float) -> float:
+    """Time of floating-point operations, as the number of entries that a solution reads in it.
 
     Args:
         operations: Their number, half of it where they are in single precision and solutions not.
@@ -57,18 +57,18 @@ def in_reads(operations: float) -> float:
     return operations / _OPERATIONS_PER_ENTRY
 
 
-def sparse_reads(entries: float, operations: float) -> float:
-    """Time of a sparse factorisation, in entries that a solution reads.
+def factorisation_cost(entries: float, operations: float) -> float:
+    """Time of a sparse factorisation, as the number of entries that a solution reads in it.
 
     Args:
         entries: Of the factor.
         operations: Floating-point operations.
 
     Example:
-        >>> sparse_reads(entries=1e6, operations=4e8) / 1e6
+        >>> factorisation_cost(entries=1e6, operations=4e8) / 1e6
         15.0
     """
-    return in_reads(operations) + _FILLING * entries
+    return operation_cost(operations) + _FILLING * entries
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,9 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
-#: Preconditioners that read one triangle of a matrix, and how far entries may differ from those of
-#: the other one, over the largest sum of a row: rounding of what is symmetric.
-HALVES, ASYMMETRY = (PETSc.PC.Type.CHOLESKY, PETSc.PC.Type.ICC), 1e-8
+#: Factorisations of symmetric matrices, and how far entries may differ from those across the
+#: diagonal, over the largest sum of a row: rounding of what is symmetric.
+SYMMETRIC, ASYMMETRY = (PETSc.PC.Type.CHOLESKY, PETSc.PC.Type.ICC), 1e-8
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
 
@@ -288,7 +288,7 @@ class Newton:
             grown = self._problem.tangent(x, matrix)
         if grown:
             self._outgrow()
-        _check_halves(self.snes.getKSP().getPC(), matrix)
+        _check_symmetric(self.snes.getKSP(), matrix)
 
     def _outgrow(self) -> None:
         """The pattern of the tangent has grown."""
@@ -380,19 +380,21 @@ class Newton:
         return text.format(n=self.snes.getIterationNumber(), r=last)
 
 
-def _check_halves(pc: PETSc.PC, matrix: Mat) -> None:
-    """Refuse a preconditioner for symmetric matrices where the tangent is none.
+def _check_symmetric(ksp: PETSc.KSP, matrix: Mat) -> None:
+    """Refuse a factorisation of symmetric matrices as the solution where the tangent is none.
+
+    As the preconditioner of Krylov iterations, which look at the whole matrix, it may serve.
 
     Raises:
-        InputError: The other triangle has other entries.
+        InputError: The tangent is not symmetric.
     """
-    if pc.getType() not in HALVES:
+    kind = ksp.getPC().getType()
+    if kind not in SYMMETRIC or ksp.getType() != PETSc.KSP.Type.PREONLY:
         return
     size = matrix.norm(PETSc.NormType.NORM_INFINITY)
     if np.isfinite(size) and not matrix.isSymmetric(ASYMMETRY * size):
         text = (
-            f"{pc.getType()!r} given, which reads half of the tangent, and rows of prescribed "
-            "displacements, friction and loads that follow have other halves; allowed: lu, or "
-            "another one for any matrix"
+            f"{kind!r} given, which needs a symmetric tangent: prescribed displacements, friction "
+            "and loads that follow make it unsymmetric; allowed: lu, or another one for any matrix"
         )
         raise InputError(text, field="options.pc_type")

@@ -18,7 +18,7 @@ from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse,
 from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
-from anisocontact.solver.strategies.costs import in_reads, sparse_reads
+from anisocontact.solver.strategies.costs import factorisation_cost, operation_cost
 
 #: PETSc: the Schur complement has a factor of its own; the place of "solve for a dense matrix".
 _FACTORED, _MAT_SOLVE = 1, 100
@@ -110,7 +110,7 @@ class BorderedLU:
         handle, schur = schur_matrix(self._interior.factor, len(self.border))
         self._schur = schur.astype(np.float32)
         entries, operations = self._interior.entries, self._interior.operations
-        self.solutions_per_factor = sparse_reads(entries, operations) / entries
+        self.solutions_per_factor = factorisation_cost(entries, operations) / entries
         self._diagonal = np.abs(np.diagonal(self._schur))
         self._shares: Sparse = whole(len(self.border))[0]
         call_petsc("MatFactorRestoreSchurComplement", self._interior.factor, None, _FACTORED)
@@ -162,7 +162,7 @@ class BorderedLU:
         return UpdatedFactor(front.own_factor(held), held, stiff, (0.0,), _CLEARLY)
 
     def _in_solutions(self, operations: float) -> float:
-        return in_reads(operations) / self._interior.entries
+        return operation_cost(operations) / self._interior.entries
 
     def _near(self, front: Front, shares: Sparse) -> bool:
         """Whether slave nodes are still about where they were when masters were eliminated."""

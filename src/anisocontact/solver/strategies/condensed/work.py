@@ -10,7 +10,7 @@ import scipy
 
 from anisocontact.base.array_types import Flags
 from anisocontact.solver.strategies.condensed.analysis import node_graph, whole_factor
-from anisocontact.solver.strategies.costs import in_reads, sparse_reads
+from anisocontact.solver.strategies.costs import factorisation_cost, operation_cost
 from anisocontact.solver.system.prediction import ContactPrediction
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
@@ -62,11 +62,11 @@ def work(problem: Problem, steps: Sequence[Step], touched: Flags) -> Work:
         touched: Whether a node can be touched, (nodes,).
     """
     count = 3.0 * np.count_nonzero(touched & _changing(problem, len(touched)))
-    dense = in_reads(count**3 / 3.0)  # two thirds, twice as fast in single precision
+    dense = operation_cost(count**3 / 3.0)  # two thirds, twice as fast in single precision
     entries, operations = whole_factor(_coupled(problem, steps), problem.unknowns)
     if not problem.linear:
         dense += _SOLUTIONS * (entries + count**2) / 2.0
-    return Work(dense, sparse_reads(entries, operations))
+    return Work(dense, factorisation_cost(entries, operations))
 
 
 def _changing(problem: Problem, nodes: int) -> Flags:

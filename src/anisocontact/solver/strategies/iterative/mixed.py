@@ -176,11 +176,8 @@ class MixedKrylov:
         note: Callable[[str], None],
     ) -> None:
         self._count, self._comm, self._note = problem.solved_for, problem.comm, once(note)
-        self._form, self._levels, self._trust = (
-            DisplacementPressureForm(problem, volume),
-            levels,
-            Trust(),
-        )
+        self._form = DisplacementPressureForm(problem, volume)
+        self._levels, self._trust = levels, Trust()
         self._right, self._found = self._form.new_vector(), self._form.new_vector()
         size = self._right.getSizes()
         matrix = PETSc.Mat().createPython((size, size), self._form, problem.comm)
