@@ -57,6 +57,8 @@ def test_a_factorisation_of_symmetric_matrices_is_refused(fe: Any) -> None:
     said = "^options.pc_type: 'cholesky' given, which needs a symmetric tangent: prescribed "
     with pytest.raises(InputError, match=said):
         warned(fe, "direct", {"pc_type": "cholesky"})
+    # Krylov iterations look at the whole matrix
+    assert warned(fe, "iterative", {"pc_type": "cholesky"}) == []
 
 
 def test_cholesky_of_a_symmetric_tangent_is_lu(fe: Any) -> None:
