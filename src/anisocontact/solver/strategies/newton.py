@@ -133,10 +133,10 @@ class NewtonResult:
 class Newton:
     """SNES with the exact tangent and convergence relative to the forces at work.
 
-    An iterate is accepted when the norm of the residual is below `snes_rtol` times
-    `ForceBalance.force_scale`, or below what floating point can resolve. Both are forces, so the
-    choice of units changes nothing; of a mixed problem that is asked of each field. Every PETSc
-    option works with the prefix, for example `-anisocontact_snes_linesearch_type basic`.
+    An iterate is accepted when what is prescribed is reached (`prescribed_reached`) and the norm of
+    the residual is below `snes_rtol` times `ForceBalance.force_scale`, or below what floating point
+    can resolve, in any units; of a mixed problem that is asked of each field. Every PETSc option
+    works with the prefix, for example `-anisocontact_snes_linesearch_type basic`.
 
     Args:
         problem: The system.
@@ -318,7 +318,7 @@ class Newton:
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF
-        small = all(field.small(rtol, atol) for field in fields)
+        small = balance.reached and all(field.small(rtol, atol) for field in fields)
         if small and contacts.consistent():
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):

@@ -17,6 +17,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.fields import Fields
 from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.prescribed_reached import prescribed_reached
 from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
@@ -107,9 +108,12 @@ class Assembly:
         self.rigid.take_faces(layout.unknowns.own_nodal(outside - load))
         residual = self.constraints.reduce(outside - load, x, self.scale)
         rows, off = self.conditions.unknowns, self.conditions.violation(x)
+        follow = self.constraints.dependents()
+        astray = residual[follow] / self.scale
         residual[rows] = self.scale * off
         self.fields.weigh(residual, rows, off)
-        rows = self.fields.of_displacement(rows)
+        moved = self.fields.of_displacement(rows)
+        off, rows = off[np.isin(rows, moved)], moved
         of_bodies = self.rigid.residual(trial.rigid, self.scale)
         held = np.concatenate([rows, self.constraints.holding])
         stiff = (self.bodies.stiff(u), np.array([self.terms.lever()]))
@@ -129,7 +133,15 @@ class Assembly:
             correction=self._multiplier_residual(u) if self.contacts.simultaneous else None,
             forces=(outside, load),
             fields=self.fields.balances(residual, x, sizes),
+            reached=self._reached(trial, np.append(rows, follow), np.append(off, astray)),
         )
+
+    def _reached(self, trial: TrialState, rows: Ints, off: Floats) -> bool:
+        """See `prescribed_reached`; displacements `rows` are off by a length each."""
+        prescribed = self.rigid.prescribed()
+        where = np.append(trial.x.array_r[rows], trial.rigid[prescribed])
+        off = np.append(off, where[len(rows) :] - self.rigid.values()[prescribed])
+        return prescribed_reached(off, where, self.layout.comm, trial.nodal, trial.rigid)
 
     def prescribed_of_bodies(self) -> Ints:
         """Unknowns of rigid bodies on this rank that are prescribed, local numbers."""

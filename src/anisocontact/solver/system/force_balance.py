@@ -61,6 +61,7 @@ class ForceBalance:
         outside: All forces but those of contact.
         load: Of these, the loads.
         fields: Of a mixed problem the balance of each field, the displacement first.
+        reached: Whether displacements are where they are prescribed, see `prescribed_reached`.
     """
 
     residual: Floats
@@ -70,6 +71,7 @@ class ForceBalance:
     outside: Floats
     load: Floats
     fields: tuple[FieldBalance, ...] = ()
+    reached: bool = True
 
     @classmethod
     def none(cls, owned: int) -> ForceBalance:
@@ -116,6 +118,7 @@ def closed(
     correction: Floats | None,
     forces: tuple[Floats, Floats] | None = None,
     fields: tuple[FieldBalance, ...] = (),
+    reached: bool = True,
 ) -> ForceBalance:
     """A balance of forces from its residual; collective.
 
@@ -128,6 +131,7 @@ def closed(
             multipliers follow.
         forces: See `ForceBalance.outside` and `ForceBalance.load`; none if left out.
         fields: See `ForceBalance.fields`.
+        reached: See `ForceBalance.reached`.
     """
     if comm.allreduce(failed):
         residual[:] = np.nan
@@ -137,7 +141,9 @@ def closed(
     if correction is not None:
         residual = residual - correction
     outside, load = forces or (np.zeros(0), np.zeros(0))
-    return ForceBalance(residual, norm, sizes.force_scale, sizes.round_off, outside, load, fields)
+    return ForceBalance(
+        residual, norm, sizes.force_scale, sizes.round_off, outside, load, fields, reached
+    )
 
 
 # Stands for the forces where there are none, so that zero over zero is zero.

@@ -1,0 +1,48 @@
+"""Prescribed displacements are met whatever forces are at work."""
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.bulk import make_material
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import CoupledFace, Problem, Solver, Step
+
+HELD = dict.fromkeys("xyz", 0.0)
+#: What lifts the top of a block, length, beside another one that is pressed by a tenth of a length.
+LIFT = 1e-10
+
+
+def top(strategy, *, displacement=None, coupled=(), motion=None):
+    """How far the top of a block of E = 1 is lifted after one beside it was pressed by 0.1."""
+    boxes = {name: BoxSpec((x, 0, 0), (1, 1, 1), (1, 1, 1)) for name, x in (("a", 0), ("b", 2))}
+    material = make_material("linear-elastic", E=1.0, nu=0.0)
+    problem = Problem(build_box(boxes), {"a": material, "b": material}, coupled=coupled)
+    held = {"a.bottom": HELD, "b.bottom": HELD}
+    rest = {name: dict.fromkeys(values, 0.0) for name, values in (motion or {}).items()}
+    press = Step("press", 1, held, pressure={"b.top": 0.1}, motion=rest)
+    lift = Step("lift", 1, displacement or {}, motion=motion or {})
+    assert len(list(Solver(problem, [press, lift], strategy=strategy).run())) == 2
+    x, u = problem.model.positions, problem.u.x.array.reshape(-1, 3)
+    return u[(x[:, 0] < 1.5) & (x[:, 2] == 1.0), 2]
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+def test_group_beside_a_large_force(strategy):
+    """Requirement: what is prescribed is where it is prescribed when an increment is accepted.
+
+    Beside the forces at work the top is where it is to be before it moves. Reference: the value
+    that is given. Tolerance: 1e-5, rounding of the largest displacement, 0.1, over the one given.
+    """
+    lifted = {"a.top": HELD | {"z": LIFT}}
+    assert top(strategy, displacement=lifted) == pytest.approx(LIFT, rel=1e-5)
+
+
+def test_face_on_a_rigid_body_beside_a_large_force():
+    """Requirement: the same of the motion of a rigid body, and of the nodes that follow it."""
+    head = RigidBody("head", (0.5, 0.5, 1.0), free=True)
+    motion = {"head": dict.fromkeys(("x", "y", "rx", "ry", "rz"), 0.0) | {"z": LIFT}}
+    lifted = top("direct", coupled=[CoupledFace("a.top", head)], motion=motion)
+    assert lifted == pytest.approx(LIFT, rel=1e-5)
+    assert head.accepted.values[2] == pytest.approx(LIFT, rel=1e-5)
