@@ -114,6 +114,17 @@ class Output(Section):
             "contact.vtkhdf and surfaces.vtkhdf, at the end; needs h5py",
         ),
     ] = False
+    checkpoint_every: Annotated[
+        float,
+        number(
+            "scalar",
+            "1",
+            "wall-clock seconds, whatever the units of the case, between two checkpoints, at least "
+            "20 times what one takes to be written; 0 writes one after each increment; the end of "
+            "a run always has one",
+            "non-negative",
+        ),
+    ] = 1.0
     quantities: list[str] = Field(
         default_factory=list,
         description="arrays of the files for ParaView, all if left out; those that pictures are "

@@ -71,8 +71,9 @@ def run(
     """Solve the steps of a case and write its results.
 
     A first Ctrl-C, or the signals TERM and HUP, end the run after the current increment, as does a
-    listener that has been lost; a Ctrl-C after that ends it at once. After every accepted
-    increment the folder has a checkpoint.
+    listener that has been lost; a Ctrl-C after that ends it at once. The folder has checkpoints
+    by time (`checkpoint_every` of the table `[output]`), and one of the last accepted increment
+    however the run ends in order.
 
     Args:
         built: The case with its problem.
@@ -180,6 +181,7 @@ def _writer(
         reporter=reporter,
         vtkhdf=case.output.vtkhdf,
         units=case.units.labels(),
+        checkpoint_every=case.output.checkpoint_every,
         case=text,
         resumed=checkpoint.facts["writer"] if checkpoint else None,
     )
@@ -220,6 +222,18 @@ class _Reports:
 def _solve(
     built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
 ) -> tuple[str, str]:
+    """Run the steps, and keep the last accepted increment; status and message."""
+    try:
+        ended = _increments(built, writer, request, facts)
+        writer.keep_last()
+    except WriteError as error:
+        return "stopped", str(error)
+    return ended
+
+
+def _increments(
+    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
+) -> tuple[str, str]:
     reports = _Reports(writer, request)
 
     def keep() -> None:
@@ -249,8 +263,6 @@ def _solve(
     except InputError as error:  # of a law in Python, or a mistake that shows where a step begins
         writer.log(f"stopped: {error}")
         writer.keep_failed(error.failed)
-        return "stopped", str(error)
-    except WriteError as error:
         return "stopped", str(error)
     return "done", ""
 

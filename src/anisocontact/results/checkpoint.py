@@ -1,4 +1,4 @@
-"""`checkpoint.npz`: all that a run needs to go on, written after each accepted increment.
+"""`checkpoint.npz`: all that a run needs to go on from an accepted increment.
 
 On several processes each writes the arrays of its own nodes and points into a file of the folder
 `checkpoint`, and `checkpoint.npz` names these files and has what all have in common. Beside its

@@ -18,11 +18,11 @@ from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.beside import Reporter, report_here
-from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
+from anisocontact.results.keeping import Checkpoints
 from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
@@ -59,6 +59,7 @@ class Writer:
         reporter: Makes it.
         vtkhdf: Whether all states are also written as one file of each sort at the end.
         units: What numbers are in, by dimension: labels of the report.
+        checkpoint_every: Wall-clock seconds between two checkpoints; 0: one after each increment.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
 
@@ -88,6 +89,7 @@ class Writer:
         reporter: Reporter = report_here,
         vtkhdf: bool = False,
         units: Mapping[str, str] = MappingProxyType({}),
+        checkpoint_every: float = 0.0,
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
     ) -> None:
@@ -98,6 +100,7 @@ class Writer:
         self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
+        self._checkpoints = Checkpoints(self.folder, problem.model, checkpoint_every)
         self._disk.write(lambda: self._open(case, resumed is not None))
         self._observer = Observer(problem, self._steps, resultants)
         self._constants = _constants(problem, masters or [c.name for c in problem.contacts])
@@ -181,7 +184,7 @@ class Writer:
         } | self._fields.state()
 
     def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
-        """Write a checkpoint, from which the run can go on.
+        """Keep an accepted increment, from which the run can go on; see `Checkpoints`.
 
         Args:
             kept: State of the run, of this rank.
@@ -192,7 +195,15 @@ class Writer:
         """
         self._kept += 1
         content = {"writer": _finite(self.state()), **facts}
-        keep_checkpoint(self.folder, self._disk, self._kept, self._problem.model, kept, content)
+        self._checkpoints.take(self._disk, self._kept, kept, content)
+
+    def keep_last(self) -> None:
+        """Write a checkpoint of the last increment that `keep` has taken, unless it has one.
+
+        Raises:
+            WriteError: It cannot be written; the one before is still there.
+        """
+        self._checkpoints.write(self._disk)
 
     def strategy(self, name: str, reason: str) -> None:
         """Say how the equations are solved, and why."""
@@ -275,6 +286,7 @@ class Writer:
             status: "done" or "stopped".
             message: Why it stopped.
         """
+        self._checkpoints.rescue()
         self._fields.close(self.summary["time"])
         self.summary["stress"] = self._bodies.extremes()
         self.summary["status"] = status

@@ -44,7 +44,8 @@ def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
 def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim, same):
     """Requirement: a full disk is an error that loses nothing: the run goes on when there is room.
 
-    The named file fails from the third accepted increment on.
+    The named file fails from the third accepted increment on. What was accepted before is kept
+    where the checkpoint itself has room.
     """
     from anisocontact.results import collection, writer
     from anisocontact.results.history import HistoryTable
@@ -78,6 +79,10 @@ def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim, sam
     said = f"error: stopped: cannot write '{victim} file': No space left on device"
     assert error[0].startswith(said)
     assert error[-1].startswith("to go on: anisocontact run ")
+    stored = checkpoint.load_checkpoint(out)
+    assert stored is not None
+    if victim != "checkpoint":
+        assert stored.facts["writer"]["summary"]["steps"] >= 2
     assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
     assert same(whole, out)
 
