@@ -74,7 +74,7 @@ class CondensedNewton:
             except SingularError as error:
                 return NewtonResult(0, [], f"{error} (a body without support?)")
             own = system.new_vector()
-            if system is not known:
+            if known is None or not np.isin(system.places, known.places).all():
                 # what has come into reach just now has no extrapolation
                 self._condensed.accepted().copy(x)
                 system.contact_term.predict(0.0)
