@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Generator, Iterator
 
 import pytest
 
 from anisocontact.base import blas_threads
-from anisocontact.base.blas_threads import choice
+from anisocontact.base.blas_threads import choice, one_thread, with_one_thread
 
 #: Products that threads share, and pauses in which they have nothing to do.
 PAUSES = """
@@ -58,20 +59,95 @@ def test_no_more_threads_than_processors(monkeypatch: pytest.MonkeyPatch) -> Non
         assert (found, environment["OPENBLAS_NUM_THREADS"]) == (threads, "1")
 
 
+def numbers() -> list[int]:
+    """How many threads each OpenBLAS has."""
+    return [one["num_threads"] for one in blas_threads._openblas().info()]
+
+
+@pytest.fixture
+def three(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
+    """Each OpenBLAS with as many of three threads as it can have, in a script."""
+    for name in blas_threads._NUMBER:
+        monkeypatch.delenv(name, raising=False)
+    with blas_threads._openblas().limit(limits=3):
+        yield numbers()
+
+
 def test_shared_work_has_two_threads_and_other_work_as_before(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, three: list[int]
 ) -> None:
     """Requirement: threads are given for the time of the block, also where it fails."""
-    numbers: list[int] = []
-    monkeypatch.setattr(blas_threads, "_setter", lambda: numbers.append)
+    assert max(three) == 3
     with blas_threads.shared(blas_threads.LARGE):
-        assert numbers == []
+        assert numbers() == three
     monkeypatch.setattr(blas_threads._GIVEN, "threads", 2)
     with blas_threads.shared(blas_threads.LARGE - 1):
-        assert numbers == []
+        assert numbers() == three
     with pytest.raises(ZeroDivisionError), blas_threads.shared(blas_threads.LARGE):
+        assert max(numbers()) == 2
         raise ZeroDivisionError
-    assert numbers == [2, 1]
+    assert numbers() == three
+
+
+def test_a_solver_has_one_thread_and_a_script_as_many_as_before(three: list[int]) -> None:
+    """Requirement: one thread while something is found, those of the script between and after it.
+
+    So where a script goes on, where it takes no more, and where finding fails.
+    """
+
+    def work() -> Generator[list[int]]:
+        yield numbers()
+        yield numbers()
+        raise ZeroDivisionError
+
+    for whole in (True, False):
+        steps = with_one_thread(work())
+        assert max(next(steps)) == 1
+        assert numbers() == three
+        if whole:
+            assert max(next(steps)) == 1
+            with pytest.raises(ZeroDivisionError):
+                next(steps)
+        else:
+            steps.close()
+        assert numbers() == three
+
+
+def test_a_solver_leaves_threads_that_the_user_has_set(
+    monkeypatch: pytest.MonkeyPatch, three: list[int]
+) -> None:
+    """Requirement: a number in the environment is that of the user, or of the command."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    with one_thread():
+        assert numbers() == three
+
+
+def test_increments_of_a_script_are_solved_with_one_thread(
+    monkeypatch: pytest.MonkeyPatch, three: list[int]
+) -> None:
+    """Requirement: that is so in `Solver.run` and in `ContactProblem.solve`."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    from anisocontact.base.fenicsx import fem, ufl
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.solver import ContactProblem, Problem, Solver, Step
+
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    problem = Problem(model, {"bar": make_material("linear-elastic", E=1.0, nu=0.3)})
+    held = {"bar.bottom": dict.fromkeys("xyz", 0.0)}
+    pull = Step("pull", 2, held, traction={"bar.top": {"z": 0.1}})
+    seen: list[int] = []
+    for _ in Solver(problem, [pull]).run(lambda _: seen.append(max(numbers()))):
+        assert numbers() == three
+    u = fem.Function(model.space)
+    form = ufl.inner(u - ufl.as_vector([0, 0, 1]), ufl.TestFunction(model.space)) * ufl.dx
+    own = ContactProblem(form, u)
+    solve = own.newton.solve
+    monkeypatch.setattr(own.newton, "solve", lambda x: seen.append(max(numbers())) or solve(x))
+    own.solve()
+    own.close()
+    assert numbers() == three
+    assert set(seen) == {1}
 
 
 def test_idle_threads_sleep() -> None:

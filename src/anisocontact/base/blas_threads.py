@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
-from collections.abc import Callable, Iterator, MutableMapping
+from collections.abc import Generator, Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -20,8 +19,6 @@ _PATIENCE, _SHORTEST = "OPENBLAS_THREAD_TIMEOUT", "4"
 _MOST = 2
 #: Rows of a matrix whose factorisation threads share: it takes 0.02 s, many times what they wait.
 LARGE = 1500
-#: Names of what sets the number of threads: in the wheels of SciPy, and in OpenBLAS as it is.
-_SETTERS = ("scipy_openblas_set_num_threads", "openblas_set_num_threads")
 
 
 @dataclass
@@ -59,7 +56,7 @@ def choice(environment: MutableMapping[str, str]) -> int:
         (1, {'OMP_NUM_THREADS': '4', 'OPENBLAS_THREAD_TIMEOUT': '4'})
     """
     environment.setdefault(_PATIENCE, _SHORTEST)
-    if any(environment.get(name) for name in _NUMBER):
+    if _numbered(environment):
         return 1
     environment[_NUMBER[0]] = "1"
     return 1 if launched() else min(_MOST, _processors())
@@ -74,28 +71,52 @@ def shared(size: int) -> Iterator[None]:
     Args:
         size: Rows of a square matrix that is factorised or multiplied with as large ones.
     """
-    change = _setter() if _GIVEN.threads > 1 and size >= LARGE else None
-    if change is None:
+    if _GIVEN.threads > 1 and size >= LARGE:
+        with _openblas().limit(limits=_GIVEN.threads):
+            yield
+    else:
         yield
-        return
-    change(_GIVEN.threads)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Around the work of a solver in a script, which has loaded NumPy with threads of its own.
+
+    What the environment says, of the user or of `choice`, stands; outside all is as it was.
+    """
+    if _numbered(os.environ):
+        yield
+    else:
+        with _openblas().limit(limits=1):
+            yield
+
+
+def with_one_thread[T](work: Generator[T]) -> Generator[T]:
+    """What a generator yields, each found with `one_thread`; who takes it has threads as before."""
     try:
-        yield
+        while True:
+            with one_thread():
+                try:
+                    found = next(work)
+                except StopIteration:
+                    return
+            yield found
     finally:
-        change(1)
+        work.close()
 
 
 @cache
-def _setter() -> Callable[[int], Any] | None:
-    """What sets the number of threads of the OpenBLAS that SciPy has; None with another BLAS."""
-    from scipy.linalg import _fblas
+def _openblas() -> Any:
+    """Every OpenBLAS of this process."""
+    import scipy.linalg  # noqa: F401 - brings one
+    from threadpoolctl import ThreadpoolController
 
-    library = ctypes.CDLL(_fblas.__file__)  # what it is linked to is looked through as well
-    for name in _SETTERS:
-        if hasattr(library, name):
-            found: Callable[[int], Any] = getattr(library, name)
-            return found
-    return None
+    return ThreadpoolController().select(internal_api="openblas")
+
+
+def _numbered(environment: Mapping[str, str]) -> bool:
+    """Whether the environment says how many threads OpenBLAS has."""
+    return any(environment.get(name) for name in _NUMBER)
 
 
 def _processors() -> int:

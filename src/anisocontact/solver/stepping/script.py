@@ -12,6 +12,7 @@ from typing import Any, override
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.blas_threads import one_thread
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
@@ -155,6 +156,14 @@ class ContactProblem(AssembledSystem):
         """
         if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
+        with one_thread():
+            iterations = self._solve(dt)
+        for said in (*self._options.unread(self.comm), *self._sides.fresh()):
+            warnings.warn(str(said), ModelWarning, stacklevel=3)
+        return iterations
+
+    def _solve(self, dt: float) -> int:
+        """Newton iterations to the equilibrium, which is accepted."""
         terms = self._assembly.terms
         terms.set_load_factor(1.0, dt)
         before = self.u.x.array.copy()
@@ -177,8 +186,6 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
-        for said in (*self._options.unread(self.comm), *self._sides.fresh()):
-            warnings.warn(str(said), ModelWarning, stacklevel=3)
         return result.iterations
 
     @typed

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import NoReturn
 
 import numpy as np
 
+from anisocontact.base.blas_threads import with_one_thread
 from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
@@ -161,7 +162,7 @@ class Solver:
         if not (self.choice.strategy.reduces and self._kept):
             self.problem.reduction.recover()
         with self._options.blamed(self.problem.together):
-            yield from self._all(note, warn)
+            yield from with_one_thread(self._all(note, warn))
 
     def persistent(self) -> Persistent:
         """State of the problem and of the run after the last accepted part, of this rank."""
@@ -203,7 +204,7 @@ class Solver:
         pace = Pace(self.limits, **numbers)
         self.place = RunPosition(step, time, pace, begun, before, stopped=stopped)
 
-    def _all(self, note: Callable[[str], None], warn: Callable[[str], None]) -> Iterator[Accepted]:
+    def _all(self, note: Callable[[str], None], warn: Callable[[str], None]) -> Generator[Accepted]:
         """Step by step, with a solver that is closed however it ends."""
         comm, strategy = self.problem.comm, self.choice.strategy
         with self._options:
