@@ -37,6 +37,10 @@ class EnergyWatch:
 
     Args:
         problem: The problem, in any accepted state.
+
+    Attributes:
+        pushed_apart: Whether bodies overlapped at the start of the run and the last increment was
+            its first: how they moved says nothing of what loads do.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -44,7 +48,7 @@ class EnergyWatch:
         self._work = self._external = self._residual = self._flow = 0.0
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(CAUSES))
-        self._begun = self._overlap = False
+        self._begun = self._overlap = self.pushed_apart = False
 
     def begin(self) -> None:
         """Start from the accepted state, unless a run goes on."""
@@ -70,7 +74,7 @@ class EnergyWatch:
         signs = (ran_off, self._flow != before[2], *self._changed(), True)
         cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
         self._parts[cause] += self._residual - before[0]
-        self._overlap = False
+        self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
         return Imbalance(share, CAUSES[int(np.abs(self._parts).argmax())] if share > 0.0 else "")
 

@@ -276,7 +276,8 @@ class Solver:
                 place.stopped[place.step] = _whole(increment, done) / step.increments
                 pace.increment = step.increments + 1
             pace.bound(min(self._turns.allowed(part), largest))
-            place.before = None if self.problem.stabilisation.landed else last
+            loads = not (self.problem.stabilisation.landed or self._energy.pushed_apart)
+            place.before = last if loads else None
             place.spent = 0
             place.lost = None if done == 1.0 else place.lost
             yield accepted
