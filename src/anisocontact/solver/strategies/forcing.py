@@ -8,6 +8,8 @@ from anisocontact.solver.strategies.newton import System
 
 #: Residual of a correction where multipliers follow, over the forces out of balance, and over all.
 _FINE, _FINEST = 1e-5, 1e-13
+#: Forces that a correction may leave, over the smallest ones at work since the increment began.
+_LEFT = 1e-3
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -15,7 +17,9 @@ class Forcing:
     """Forcing terms of inexact Newton methods [Eisenstat Walker 1996].
 
     Newton squares the residual: no correction has to be better than that or than asked for; one
-    that is rough takes points of a stiff contact from one status to another and back.
+    that is rough takes points of a stiff contact from one status to another and back. Neither does
+    the share of a residual say enough where an iterate is far off: pressures of bodies that keep
+    their volume are then 1e5 times the loads, and what is left of them would be as large as these.
 
     Args:
         tolerance: Residual over the forces at work at which Newton stops.
@@ -25,11 +29,11 @@ class Forcing:
 
     def __init__(self, tolerance: float, rough: float = 1e-2, careful: float = 1e-5) -> None:
         self.tolerance, self._rough, self._careful = tolerance, rough, careful
-        self._before = np.inf
+        self._before = self._least = np.inf
 
     def begin(self) -> None:
         """Take it that an increment begins."""
-        self._before = np.inf
+        self._before = self._least = np.inf
 
     def rtol(self, system: System, size: float) -> float:
         """Residual of the next correction over its right-hand side, at most.
@@ -38,6 +42,12 @@ class Forcing:
             system: The system at its last evaluation.
             size: Norm of the right-hand side, force.
         """
+        self._least = min(self._least, system.balance.force_scale)
+        most = _LEFT * self._least / max(size, _TINY)
+        return min(self._share(system, size), max(most, _FINEST))
+
+    def _share(self, system: System, size: float) -> float:
+        """What the residual of now allows for."""
         relative = size / max(system.balance.force_scale, _TINY)
         rough = self._rough if relative < self._before else self._careful
         self._before = 0.5 * relative
