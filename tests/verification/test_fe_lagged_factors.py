@@ -190,7 +190,7 @@ def test_a_factor_in_single_precision_that_is_not_enough(monkeypatch: pytest.Mon
         asked.append(single)
         factor = make(matrix, border, single)
         if single:  # stands for one that is of no use
-            monkeypatch.setattr(factor, "solve", lambda b, x: x.set(0.0))
+            monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)
         return factor
 
     monkeypatch.setattr(lagged, "BorderedLU", made)
@@ -208,7 +208,7 @@ def test_where_no_kept_factor_serves(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def made(*given: Any) -> Any:
         factor = make(*given)
-        monkeypatch.setattr(factor, "solve", lambda b, x: x.set(0.0))  # of no use
+        monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)  # of no use
         return factor
 
     monkeypatch.setattr(lagged, "BorderedLU", made)

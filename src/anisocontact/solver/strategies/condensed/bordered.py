@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Ints
-from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.petsc_calls import call_petsc, has_petsc
+from anisocontact.solver.strategies.condensed.diagonal_rows import DiagonalRows
 from anisocontact.solver.strategies.condensed.factor import aij, singular
 from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse, whole
 from anisocontact.solver.strategies.condensed.interior import Interior
@@ -40,17 +41,15 @@ def reachable() -> bool:
     """Whether this PETSc has what `BorderedLU` needs."""
     if not has_petsc("MatFactorRestoreSchurComplement", "MatSetOperation", "MatDenseGetArray"):
         return False
-    small = aij(scipy.sparse.csr_array([[2.0, -1.0], [-1.0, 2.0]]))
+    small = scipy.sparse.csr_array([[2.0, -1.0], [-1.0, 2.0]])
     try:
         factor = BorderedLU(small, np.array([0]))
     except PETSc.Error:
         return False
     factor.renew(scipy.sparse.csr_array([[1.0]]), *whole(1))
-    b, x = small.createVecs()
-    b.array[:] = [2.0, 1.0]
-    factor.solve(b, x)
+    x = factor.solution(np.array([2.0, 1.0]))
     factor.close()
-    return bool(np.allclose(x.array_r, 1.0))
+    return bool(np.allclose(x, 1.0))
 
 
 class BorderedLU:
@@ -59,10 +58,11 @@ class BorderedLU:
     With the unknowns cut into interior i and border c MUMPS factorises `A_ii` and makes
     `S = A_cc - A_ci A_ii^-1 A_ic` once; `S + C` is factorised here, see `Front`, dense and in
     single precision, whenever C is another one. A solution condenses the right-hand side,
-    solves with the border and expands: every entry of the factor is read once.
+    solves with the border and expands: every entry of the factor is read once. Unknowns of the
+    interior whose row is a diagonal, as where they are prescribed, are no part of the factor.
 
     Args:
-        matrix: A, on one process; any matrix whose interior has an inverse.
+        matrix: A, columns in order; any matrix whose interior has an inverse.
         border: Numbers of the border unknowns, increasing, (c,); neither none nor all.
         single: Whether MUMPS works in single precision, where this PETSc can.
 
@@ -71,12 +71,18 @@ class BorderedLU:
 
     Attributes:
         border: As given.
+        factorised: Number of unknowns that are not known before.
         solutions_per_factor: Solutions that cost as much as the factorisation.
     """
 
-    def __init__(self, matrix: Mat, border: Ints, single: bool = False) -> None:
+    def __init__(self, matrix: Sparse, border: Ints, single: bool = False) -> None:
         self.border, self._single = border, single
-        self._interior = Interior(matrix, border, *(_SINGLE if single else ("", {})))
+        self._known = DiagonalRows(matrix, border)
+        own = np.searchsorted(self._known.others, border)
+        rest = aij(self._known.rest)
+        self._right, self._left = rest.createVecs()
+        self.factorised = len(self._known.others)
+        self._interior = Interior(rest, own, *(_SINGLE if single else ("", {})))
         self._callback = _MatSolve(self._answer)
         self._begin()
 
@@ -96,8 +102,12 @@ class BorderedLU:
         """
         if single != self._single or not np.array_equal(border, self.border):
             return False
-        if not self._interior.take(matrix):
+        known = DiagonalRows(matrix, border)
+        if not np.array_equal(known.others, self._known.others):
             return False
+        if not self._interior.take(known.rest):
+            return False
+        self._known = known
         self._begin()
         return True
 
@@ -222,9 +232,14 @@ class BorderedLU:
             self._given = _kept(kept, "given", count)
             updated.take(self._given, count)
 
-    def solve(self, b: Vec, x: Vec) -> None:
-        """Solve `(A + C) x = b`; `renew` comes first."""
-        self._interior.factor.solve(b, x)
+    def solution(self, b: Floats) -> Floats:
+        """Solution of `(A + C) x = b`; `renew` comes first."""
+        return self._known.solution(b, self._of_others)
+
+    def _of_others(self, b: Floats) -> Floats:
+        self._right.array[:] = b
+        self._interior.factor.solve(self._right, self._left)
+        return np.asarray(self._left.array_r)
 
     def close(self) -> None:
         """Give back the memory."""

@@ -10,7 +10,6 @@ import scipy
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
-from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
@@ -184,12 +183,7 @@ class LaggedFactor:
             spent = factor.renew(touched.tangent(), *touched.shares())
         except SingularError:
             return b, np.inf
-        given, direction, out = (tangent.createVecRight() for _ in range(3))
-
-        def solution(v: Floats) -> Floats:
-            given.array[:] = v
-            factor.solve(given, direction)
-            return np.asarray(direction.array_r)
+        given, out = tangent.createVecs()
 
         def product(v: Floats) -> Floats:
             given.array[:] = v
@@ -203,13 +197,13 @@ class LaggedFactor:
         if volume is None:
 
             def step(v: Floats) -> tuple[Floats, Floats]:
-                found = solution(v)
+                found = factor.solution(v)
                 return found, product(found)
 
             found, left, used = gmres(step, b, rtol, most, trial)
         else:
             mixed = MixedForm(self._problem, self._slope, volume.rows())
-            found, left, used = mixed.solve(solution, product, b, rtol, most, trial)
+            found, left, used = mixed.solve(factor.solution, product, b, rtol, most, trial)
         self.krylov[-1] += used
         self._count(factor, spent + used, left, fresh)
         return found, left
@@ -276,7 +270,7 @@ class LaggedFactor:
         Raises:
             SingularError: There is none.
         """
-        return BorderedLU(aij(self._of_factor, 3), unknowns, self._single)
+        return BorderedLU(self._of_factor, unknowns, self._single)
 
     def _doubled(self, tangent: Mat) -> bool:
         """Make a factor in double precision, from now on."""
