@@ -87,6 +87,53 @@ def test_steps_without_search_are_never_given_up_for_creeping():
     assert not result.reason
 
 
+def test_a_search_after_full_steps_is_the_one_of_the_options():
+    """PETSc gives a type that is set anew its own defaults, of which cubic steps are one.
+
+    Both solutions begin at the same point: their residuals are the same to the last bit.
+    """
+    system = Valley(10.0)
+    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
+    newton = Newton(system, "again_", dense, lambda *_: None)
+    found = []
+    for full_steps in (False, True, False):
+        x = system.new_vector()
+        x.array[:] = (-1.2, 1.44)
+        found.append(newton.solve(x, full_steps).residuals)
+    newton.close()
+    assert found[2] == found[0] != found[1]
+
+
+class Ramp(Valley):
+    """A residual that jumps by ten at a = -1/5, in front of where full steps end."""
+
+    def __init__(self) -> None:
+        super().__init__(1.0)
+        self.seen: list[float] = []
+
+    def evaluate(self, x: Vec) -> np.ndarray:
+        a, b = x.array_r
+        self.seen.append(float(a))
+        return np.array([a if a < -0.2 else 10.0 + a, b])
+
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        out.setValues([0, 1], [0, 1], [1.0, 0.0, 0.0, 1.0])
+        out.assemble()
+        return False
+
+
+def test_the_line_search_halves_steps():
+    """Behind a jump the parabola through a step says nothing: it would take a tenth of it."""
+    system = Ramp()
+    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc", "snes_max_it": 1}
+    newton = Newton(system, "ramp_", dense, lambda *_: None)
+    x = system.new_vector()
+    x.array[:] = (-1.0, 0.0)
+    newton.solve(x)
+    newton.close()
+    assert system.seen == pytest.approx([-1.0, 0.0, -0.5], abs=1e-15)
+
+
 class Jump(Valley):
     """A spring with dry friction, `a + 2 sign(a) - 1/2`, which full steps go to and fro about."""
 
