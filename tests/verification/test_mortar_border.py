@@ -40,7 +40,9 @@ def _pressed(model: Any, *sides: str) -> tuple[Contact, int, int]:
 
 @pytest.mark.parametrize(("n", "bound"), [(4, 0.01), (6, 0.005), (8, 0.005)])
 def test_nodes_on_the_border_of_the_master(n: int, bound: float) -> None:
-    """A block on a larger base with nodes below its edges, the base as the slave.
+    """A block on a larger base, the base as the slave, its nodes nowhere just beyond the edges.
+
+    They are a half or a quarter of a facet beyond, or below the edges.
 
     Source: the same pair with the sides swapped, where no facet of the slave is covered in part.
     Requirement: no cut, ten iterations, the same force within 0.5 %, 1 % where four facets
