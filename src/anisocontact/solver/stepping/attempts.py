@@ -284,7 +284,7 @@ def _reason(reason: str, culprits: list[Culprit]) -> str:
     if kind == "flipping":
         told = f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
         border = sum(culprit.border for culprit in culprits)
-        advice = "take the other side as the slave, or the pass mortar"
+        advice = "take the other side as the slave, or the pass mortar if it has another"
         return f"{told}, {border} of them at the border of the master: {advice}" if border else told
     if kind == "hopping":
         return f"{reason}; {len(culprits)} slave points alternate between facets"

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import warnings
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, override
@@ -17,12 +15,12 @@ from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
-from anisocontact.base.whole_files import replacing
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton import Newton
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -45,8 +43,6 @@ from anisocontact.solver.terms.unconstrained_modes import MeshPart, parts, uncon
 #: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
 NEAR = 1e-6
 LIMITS = Limits()
-#: What NumPy says of a file that is no state, or half of one.
-_UNREADABLE = (OSError, EOFError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
 
 
 @typed
@@ -251,13 +247,7 @@ class ContactProblem(AssembledSystem):
         arrays = {"u": self.u.x.array}
         for i, history in enumerate(self._assembly.terms.histories()):
             arrays |= {f"{i}/{name}": values for name, values in history.items()}
-        own = self._own_file(path)
-        try:
-            with replacing(own) as draft, draft.open("wb") as file:
-                np.savez(file, allow_pickle=False, **arrays)
-        except OSError as problem:
-            text = f"'{own}' cannot be written: {problem.strerror or problem}"
-            raise InputError(text, "path") from None
+        write_arrays(own_file(path, self.comm), arrays)
 
     @typed
     def restore(self, path: str | Path) -> None:
@@ -269,12 +259,8 @@ class ContactProblem(AssembledSystem):
         Raises:
             InputError: It cannot be read, or is that of another problem.
         """
-        file = self._own_file(path)
-        try:
-            with file.open("rb") as stream:
-                kept = dict(np.load(stream))
-        except _UNREADABLE as problem:
-            raise InputError(f"'{file}' cannot be read: {problem}", "path") from None
+        file = own_file(path, self.comm)
+        kept = read_arrays(file)
         now = self._assembly.terms.histories()
         histories = [under(f"{i}/", kept) for i in range(len(now))]
         shapes = [{name: v.shape for name, v in h.items()} for h in (*now, {"u": self.u.x.array})]
@@ -283,11 +269,6 @@ class ContactProblem(AssembledSystem):
             raise InputError(f"'{file}' is that of another problem, or of other processes", "path")
         self.u.x.array[:] = kept["u"]
         self._assembly.terms.take_histories(iter(histories), self.nodal)
-
-    def _own_file(self, path: str | Path) -> Path:
-        """The file of this process."""
-        path = Path(path)
-        return path.with_suffix(f".{self.comm.rank}{path.suffix}") if self.comm.size > 1 else path
 
     def close(self) -> None:
         """Give back the objects of PETSc."""

@@ -16,6 +16,7 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.strategies.database import Database, OptionValue
+from anisocontact.solver.strategies.symmetric import check_symmetric
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
@@ -45,9 +46,6 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
-#: Factorisations of symmetric matrices, and how far entries may differ from those across the
-#: diagonal, over the largest sum of a row: rounding of what is symmetric.
-SYMMETRIC, ASYMMETRY = (PETSc.PC.Type.CHOLESKY, PETSc.PC.Type.ICC), 1e-8
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
 
@@ -298,7 +296,7 @@ class Newton:
             grown = self._problem.tangent(x, matrix)
         if grown:
             self._outgrow()
-        _check_symmetric(self.snes.getKSP(), matrix)
+        check_symmetric(self.snes.getKSP(), matrix)
 
     def _outgrow(self) -> None:
         """The pattern of the tangent has grown."""
@@ -388,23 +386,3 @@ class Newton:
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")
         return text.format(n=self.snes.getIterationNumber(), r=last)
-
-
-def _check_symmetric(ksp: PETSc.KSP, matrix: Mat) -> None:
-    """Refuse a factorisation of symmetric matrices as the solution where the tangent is none.
-
-    As the preconditioner of Krylov iterations, which look at the whole matrix, it may serve.
-
-    Raises:
-        InputError: The tangent is not symmetric.
-    """
-    kind = ksp.getPC().getType()
-    if kind not in SYMMETRIC or ksp.getType() != PETSc.KSP.Type.PREONLY:
-        return
-    size = matrix.norm(PETSc.NormType.NORM_INFINITY)
-    if np.isfinite(size) and not matrix.isSymmetric(ASYMMETRY * size):
-        text = (
-            f"{kind!r} given, which needs a symmetric tangent: prescribed displacements, friction "
-            "and loads that follow make it unsymmetric; allowed: lu, or another one for any matrix"
-        )
-        raise InputError(text, field="options.pc_type")
