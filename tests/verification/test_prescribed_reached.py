@@ -4,10 +4,14 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+import numpy as np
+
+from anisocontact.base.fenicsx import MPI
 from anisocontact.bulk import make_material
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Problem, Solver, Step
+from anisocontact.solver.system.prescribed_reached import prescribed_reached
 
 HELD = dict.fromkeys("xyz", 0.0)
 #: What lifts the top of a block, length, beside another one that is pressed by a tenth of a length.
@@ -46,3 +50,14 @@ def test_face_on_a_rigid_body_beside_a_large_force():
     lifted = top("direct", coupled=[CoupledFace("a.top", head)], motion=motion)
     assert lifted == pytest.approx(LIFT, rel=1e-5)
     assert head.accepted.values[2] == pytest.approx(LIFT, rel=1e-5)
+
+
+@pytest.mark.parametrize(("off", "reached"), [(1e-16, True), (1e-13, False)])
+def test_all_that_goes_back_to_zero(off, reached):
+    """Requirement: where all displacements are rounding, that of a mesh of size 1 is near enough.
+
+    There is nothing else to compare with: such a step did not end. Bound: 3.6e-15, sixteen times
+    the precision of a number.
+    """
+    there = np.array([off, 0.0])
+    assert prescribed_reached(there, there, MPI.COMM_SELF, 1.0, there) is reached

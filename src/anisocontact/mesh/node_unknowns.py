@@ -36,6 +36,12 @@ class NodeUnknowns:
         self.owned = int(self._size * self._index_map.size_local)
         self.node_count = int(self._index_map.size_local + self._index_map.num_ghosts)
 
+    @cached_property
+    def extent(self) -> float:
+        """Longest edge of the box around the nodes of this rank at rest, length."""
+        x = self.nodes.mesh.geometry.x
+        return float(np.ptp(x, axis=0).max()) if len(x) else 0.0
+
     def among(self, space: Any) -> bool:
         """Whether they are unknowns of a space."""
         return bool(self.nodes == space)

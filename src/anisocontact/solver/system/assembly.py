@@ -141,7 +141,10 @@ class Assembly:
         prescribed = self.rigid.prescribed()
         where = np.append(trial.x.array_r[rows], trial.rigid[prescribed])
         off = np.append(off, where[len(rows) :] - self.rigid.values()[prescribed])
-        return prescribed_reached(off, where, self.layout.comm, trial.nodal, trial.rigid)
+        layout = self.layout
+        return prescribed_reached(
+            off, where, layout.comm, layout.unknowns.extent, trial.nodal, trial.rigid
+        )
 
     def prescribed_of_bodies(self) -> Ints:
         """Unknowns of rigid bodies on this rank that are prescribed, local numbers."""

@@ -14,7 +14,9 @@ from anisocontact.solver.system.force_balance import ROUND_OFF
 TOLERANCE = 1e-8
 
 
-def prescribed_reached(off: Floats, given: Floats, comm: Any, *everywhere: Floats) -> bool:
+def prescribed_reached(
+    off: Floats, given: Floats, comm: Any, extent: float, *everywhere: Floats
+) -> bool:
     """Whether all that is prescribed, or follows from other unknowns, is where it is to be.
 
     Forces do not tell: their scale is that of bodies at rest, and where these have become 1e7 times
@@ -25,13 +27,15 @@ def prescribed_reached(off: Floats, given: Floats, comm: Any, *everywhere: Float
         off: How far the unknowns of this rank are from what is prescribed, length.
         given: Where they are, length.
         comm: Communicator.
-        everywhere: All displacements of this rank, whose rounding nothing can be nearer than.
+        extent: Of the mesh on this rank, length. Its rounding, and that of displacements, is near
+            enough: where all goes back to zero there is nothing else to compare with.
+        everywhere: All displacements of this rank.
     """
     size = max(_largest(given), _largest(given - off))
-    largest = np.array([_largest(off), size, max(map(_largest, everywhere))])
+    largest = np.array([_largest(off), size, max(extent, *map(_largest, everywhere))])
     comm.Allreduce(MPI.IN_PLACE, largest, MPI.MAX)
-    error, size, moved = largest
-    return bool(error <= max(TOLERANCE * size, ROUND_OFF * moved))
+    error, size, length = largest
+    return bool(error <= max(TOLERANCE * size, ROUND_OFF * length))
 
 
 def _largest(values: Floats) -> float:
