@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
@@ -59,12 +60,20 @@ class Valley:
         return False
 
 
+def _newton(system: Valley, **options: Any) -> Newton:
+    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
+    return Newton(system, "equations_", dense | options, lambda *_: None)
+
+
+def _at(system: Valley, a: float, b: float) -> Vec:
+    x = system.new_vector()
+    x.array[:] = (a, b)
+    return x
+
+
 def _solved(full_steps: bool, **options: Any) -> tuple[Any, np.ndarray]:
     system = Valley(1e6)
-    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
-    newton = Newton(system, "valley_", dense | options, lambda *_: None)
-    x = system.new_vector()
-    x.array[:] = (-1.2, 1.44)
+    newton, x = _newton(system, **options), _at(system, -1.2, 1.44)
     result = newton.solve(x, full_steps)
     newton.close()
     return result, x.array_r.copy()
@@ -93,28 +102,29 @@ def test_a_search_after_full_steps_is_the_one_of_the_options():
     Both solutions begin at the same point: their residuals are the same to the last bit.
     """
     system = Valley(10.0)
-    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
-    newton = Newton(system, "again_", dense, lambda *_: None)
-    found = []
-    for full_steps in (False, True, False):
-        x = system.new_vector()
-        x.array[:] = (-1.2, 1.44)
-        found.append(newton.solve(x, full_steps).residuals)
+    newton = _newton(system)
+    ways = (False, True, False)
+    found = [newton.solve(_at(system, -1.2, 1.44), full_steps).residuals for full_steps in ways]
     newton.close()
     assert found[2] == found[0] != found[1]
 
 
-class Ramp(Valley):
-    """A residual that jumps by ten at a = -1/5, in front of where full steps end."""
+class Jump(Valley):
+    """A residual of slope one that jumps, beside one that is linear.
 
-    def __init__(self) -> None:
+    Args:
+        of: The first residual.
+    """
+
+    def __init__(self, of: Callable[[float], float]) -> None:
         super().__init__(1.0)
+        self._of = of
         self.seen: list[float] = []
 
     def evaluate(self, x: Vec) -> np.ndarray:
-        a, b = x.array_r
-        self.seen.append(float(a))
-        return np.array([a if a < -0.2 else 10.0 + a, b])
+        a, b = map(float, x.array_r)
+        self.seen.append(a)
+        return np.array([self._of(a), b])
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         out.setValues([0, 1], [0, 1], [1.0, 0.0, 0.0, 1.0])
@@ -123,41 +133,25 @@ class Ramp(Valley):
 
 
 def test_the_line_search_halves_steps():
-    """Behind a jump the parabola through a step says nothing: it would take a tenth of it."""
-    system = Ramp()
-    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc", "snes_max_it": 1}
-    newton = Newton(system, "ramp_", dense, lambda *_: None)
-    x = system.new_vector()
-    x.array[:] = (-1.0, 0.0)
-    newton.solve(x)
+    """Behind a jump the parabola through a step says nothing: it would take a tenth of it.
+
+    The residual jumps by ten at a = -1/5, in front of where full steps end.
+    """
+    system = Jump(lambda a: a if a < -0.2 else 10.0 + a)
+    newton = _newton(system, snes_max_it=1)
+    newton.solve(_at(system, -1.0, 0.0))
     newton.close()
     assert system.seen == pytest.approx([-1.0, 0.0, -0.5], abs=1e-15)
 
 
-class Jump(Valley):
-    """A spring with dry friction, `a + 2 sign(a) - 1/2`, which full steps go to and fro about."""
-
-    def __init__(self) -> None:
-        super().__init__(1.0)
-
-    def evaluate(self, x: Vec) -> np.ndarray:
-        a, b = x.array_r
-        return np.array([a + 2.0 * np.sign(a) - 0.5, b])
-
-    def tangent(self, x: Vec, out: Mat) -> bool:
-        out.setValues([0, 1], [0, 1], [1.0, 0.0, 0.0, 1.0])
-        out.assemble()
-        return False
-
-
 def test_cycle_of_two_is_given_up():
-    """States that alternate are seen after two periods, not after 25 corrections."""
-    system = Jump()
-    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
-    newton = Newton(system, "jump_", dense, lambda *_: None)
-    x = system.new_vector()
-    x.array[:] = (1.0, 0.0)
-    result = newton.solve(x, full_steps=True)
+    """States that alternate are seen after two periods, not after 25 corrections.
+
+    The equation is that of a spring with dry friction, which full steps go to and fro about.
+    """
+    system = Jump(lambda a: a + 2.0 * np.sign(a) - 0.5)
+    newton = _newton(system)
+    result = newton.solve(_at(system, 1.0, 0.0), full_steps=True)
     assert result.reason.startswith("no convergence")
     assert result.iterations < 8
 

@@ -266,6 +266,8 @@ def test_a_correction_from_far_off_leaves_less_than_the_forces_at_work() -> None
     times these, and 1e-13 of the residual at least, which rounding allows. Tolerance: rounding.
     """
     forcing, problem = Forcing(1e-8, ROUGH, CAREFUL), _pair()
+    problem.balance = replace(problem.balance, force_scale=0.0)
+    assert forcing.rtol(problem, 1e-1) == ROUGH  # where no force is at work there is no such bound
     problem.balance = replace(problem.balance, force_scale=1.0)
     assert forcing.rtol(problem, 1e-1) == ROUGH
     problem.balance = replace(problem.balance, force_scale=1e4)

@@ -56,8 +56,8 @@ def test_face_on_a_rigid_body_beside_a_large_force():
 def test_all_that_goes_back_to_zero(off, reached):
     """Requirement: where all displacements are rounding, that of a mesh of size 1 is near enough.
 
-    There is nothing else to compare with: such a step did not end. Bound: 3.6e-15, sixteen times
-    the precision of a number.
+    There is nothing else to compare with: such a step would be cut again and again. Bound:
+    3.6e-15, sixteen times the precision of a number.
     """
     there = np.array([off, 0.0])
     assert prescribed_reached(there, there, MPI.COMM_SELF, 1.0, there) is reached

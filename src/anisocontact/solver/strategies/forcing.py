@@ -42,7 +42,7 @@ class Forcing:
             system: The system at its last evaluation.
             size: Norm of the right-hand side, force.
         """
-        self._least = min(self._least, system.balance.force_scale)
+        self._least = min(self._least, system.balance.force_scale or np.inf)
         most = _LEFT * self._least / max(size, _TINY)
         return min(self._share(system, size), max(most, _FINEST))
 

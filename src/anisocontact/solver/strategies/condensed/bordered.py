@@ -71,7 +71,6 @@ class BorderedLU:
 
     Attributes:
         border: As given.
-        factorised: Number of unknowns that are not known before.
         solutions_per_factor: Solutions that cost as much as the factorisation.
     """
 
@@ -81,7 +80,6 @@ class BorderedLU:
         own = np.searchsorted(self._known.others, border)
         rest = aij(self._known.rest)
         self._right, self._left = rest.createVecs()
-        self.factorised = len(self._known.others)
         self._interior = Interior(rest, own, *(_SINGLE if single else ("", {})))
         self._callback = _MatSolve(self._answer)
         self._begin()

@@ -22,6 +22,7 @@ class DiagonalRows:
 
     Attributes:
         others: Numbers of the others, increasing, (m,).
+        rest: Their matrix, (m, m); zeros that have a place keep it.
 
     Example:
         >>> import scipy
@@ -46,7 +47,6 @@ class DiagonalRows:
         self._alone: Ints = np.flatnonzero(alone)
         self._sizes = sizes[self._alone]
         of_others = matrix[self.others]
-        #: Matrix of the others, (m, m); zeros that have a place keep it.
         self.rest: Sparse = of_others[:, self.others].tocsr()
         self._acting: Sparse = of_others[:, self._alone].tocsr()
 
