@@ -8,6 +8,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape, read_gmsh
+from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.write import write_mesh
 from anisocontact.results.dataset import DataSet, vertices
 from anisocontact.results.report import maps
@@ -34,6 +35,45 @@ def test_a_file_of_gmsh_gives_the_same_mesh(tmp_path, cell, order):
         np.unique(m.space.tabulate_dof_coordinates().round(9), axis=0) for m in (written, built)
     ]
     assert np.array_equal(*nodes)
+
+
+def gmsh_file(path, points: list[tuple[float, float]], elements: list[str]):
+    """A file of format 2.2 with nodes by their places, and group 1, "a.low", group 2, "a"."""
+    sections = {
+        "MeshFormat": ["2.2 0 8"],
+        "PhysicalNames": ["2", '1 1 "a.low"', '2 2 "a"'],
+        "Nodes": [f"{len(points)}", *(f"{k} {x} {y} 0" for k, (x, y) in enumerate(points, 1))],
+        "Elements": [f"{len(elements)}", *elements],
+    }
+    lines = [line for name, rows in sections.items() for line in (f"${name}", *rows, f"$End{name}")]
+    path.write_text("\n".join([*lines, ""]))
+    return path
+
+
+def test_quadrilaterals_beside_triangles_are_cut(tmp_path):
+    """Requirement: what gmsh recombines but for a few triangles is read as triangles, and so said,
+    with its groups; the area is that of the file, a strip of 3 x 1, to rounding."""
+    points = [(0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (1, 1), (2, 1), (3, 1)]
+    elements = ["1 1 2 1 1 1 2", "2 1 2 1 1 2 3", "3 3 2 2 1 1 2 6 5", "4 3 2 2 1 2 3 7 6"]
+    elements += ["5 2 2 2 1 3 4 8", "6 2 2 2 1 3 8 7"]
+    strip = gmsh_arrays(gmsh_file(tmp_path / "a.msh", points, elements))
+    told = "quadrilaterals of 4 nodes and triangles of 3 nodes are taken as 6 triangles"
+    assert strip.notes == (told,)
+    assert strip.cell == "triangle" and len(strip.facets["a.low"]) == 2
+    x = strip.points[strip.cells][:, :, :2]
+    area = 0.5 * np.abs(np.linalg.det(x[:, 1:] - x[:, :1])).sum()
+    assert area == pytest.approx(3.0, rel=1e-14)
+
+
+def test_quadrilaterals_of_8_nodes_get_a_middle(tmp_path):
+    """Requirement: cells of `Mesh.SecondOrderIncomplete`, one with a curved side, are of order 2;
+    their middle is where the shape functions of eight nodes have it, to rounding."""
+    points = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0.4), (2, 1), (1, 2), (0, 1)]
+    elements = ["1 8 2 1 1 1 2 5", "2 16 2 2 1 1 2 3 4 5 6 7 8"]
+    cell = gmsh_arrays(gmsh_file(tmp_path / "a.msh", points, elements))
+    assert cell.degree == 2 and len(cell.facets["a.low"]) == 1
+    middle = [p for p in cell.points[:, :2] if not any(np.allclose(p, q) for q in points)]
+    np.testing.assert_allclose(middle, [(1.0, 1.2)], atol=1e-14)
 
 
 def line_view(x: np.ndarray, traction: float = 0.0) -> ContactView:

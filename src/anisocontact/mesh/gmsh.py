@@ -47,10 +47,17 @@ _IN_VTK = {
     18: ("prism", [*range(6), 6, 9, 7, 12, 14, 13, 8, 10, 11]),
     7: ("pyramid", [*range(5)]),
     19: ("pyramid", [*range(5), 5, 8, 10, 6, 7, 9, 11, 12]),
+    2: ("triangle", [*range(3)]),
+    9: ("triangle", [*range(6)]),
+    3: ("quadrilateral", [*range(4)]),
+    10: ("quadrilateral", [*range(9)]),
+    16: ("quadrilateral", [*range(8)]),
 }
 _IN_VTK |= {full: _IN_VTK[edges] for full, edges in ((12, 17), (13, 18), (14, 19))}
 #: Those of them that are kept as they are where they are alone.
-_AS_THEY_ARE = {4, 5, 11, 12}
+_AS_THEY_ARE = set(CELLS)
+#: Corners of facets by the gmsh element type of these.
+_CORNERS = {1: 2, 8: 2, 2: 3, 9: 3}
 
 
 def read_gmsh(
@@ -100,10 +107,11 @@ def gmsh_arrays(
         raise InputError(f"mesh file {str(path)!r} does not exist", field)
     try:
         msh = read_msh(path, comm)
-        kinds = set().union(*comm.allgather({b.kind for b in msh.blocks if b.dim == 3}))
+        dim = 3 if any(block.dim == 3 for block in msh.blocks) else 2
+        kinds = set().union(*comm.allgather({b.kind for b in msh.blocks if b.dim == dim}))
         if kinds <= set(_IN_VTK) and (len(kinds) > 1 or not kinds <= _AS_THEY_ARE):
-            return _made_over(read_msh(path, MPI.COMM_SELF), bodies).shared(comm)
-        return _arrays(msh, bodies, comm)
+            return _made_over(read_msh(path, MPI.COMM_SELF), dim, bodies).shared(comm)
+        return _arrays(msh, dim, bodies, comm)
     except (MshError, OSError) as problem:
         raise InputError(
             f"mesh file {str(path)!r} is not a readable gmsh file: {problem}", field
@@ -112,8 +120,7 @@ def gmsh_arrays(
         raise InputError(f"mesh file {str(path)!r}: {problem}", field) from None
 
 
-def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays:
-    dim = 3 if any(block.dim == 3 for block in msh.blocks) else 2
+def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> MeshArrays:
     volumes = _volumes(msh, dim, bodies)
     cell, degree = _kind([block for _, block in volumes])
     names = list(dict.fromkeys(name for name, _ in volumes))
@@ -144,16 +151,16 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     return replace(mesh, nodes=_points_and_edges(mesh, lower))
 
 
-def _made_over(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
+def _made_over(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> MeshArrays:
     """Cells of which nodes are put in, or which are cut, so that a mesh can have them."""
     mesh = WholeMesh(msh.points)
-    for name, block in _volumes(msh, 3, bodies):
+    for name, block in _volumes(msh, dim, bodies):
         cell, order = _IN_VTK[block.kind]
         mesh.add_cells(cell, block.nodes[:, order], [name] * len(block.nodes))
-    for name, block in _named(msh, 2):
-        corners = 3 if CELLS.get(block.kind, ("",))[0] == "triangle" else 4
-        mesh.surfaces.setdefault(name, []).append(block.nodes[:, :corners])
-    for name, block in (*_named(msh, 0), *_named(msh, 1)):
+    for name, block in _named(msh, dim - 1):
+        corners = block.nodes[:, : _CORNERS.get(block.kind, 4)]
+        mesh.surfaces.setdefault(name, []).append(corners)
+    for name, block in (one for below in range(dim - 1) for one in _named(msh, below)):
         before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
         mesh.node_sets[name] = np.union1d(before, block.nodes)
     return mesh.arrays(bodies)
@@ -215,7 +222,7 @@ def _kind(blocks: list[ElementBlock]) -> tuple[str, int]:
     if not kinds <= set(CELLS):
         raise InputError(
             "a cell is neither a tetrahedron of 4 or 10 nodes nor a hexahedron of 8, 20 or 27 "
-            "nodes, nor in the plane a triangle of 3 or 6 or a quadrilateral of 4 or 9"
+            "nodes, nor in the plane a triangle of 3 or 6 or a quadrilateral of 4, 8 or 9"
         )
     if len(kinds) > 1:
         found = ", ".join(f"{cell} of order {n}" for cell, n in (CELLS[k] for k in sorted(kinds)))
