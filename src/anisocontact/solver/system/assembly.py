@@ -116,15 +116,16 @@ class Assembly:
         off, rows = off[np.isin(rows, moved)], moved
         of_bodies = self.rigid.residual(trial.rigid, self.scale)
         held = np.concatenate([rows, self.constraints.holding])
-        stiff = (self.bodies.stiff(u), np.array([self.terms.lever()]))
-        on_nodes, *norms = layout.norms(given, outside[held], reaction, residual[rows], *stiff)
-        at_work = [
-            *norms[:3],
+        forces = (given, outside[held], reaction, residual[rows])
+        rounded = (self.bodies.stiff(u), np.array([self.terms.lever()]))
+        on_nodes, *at_work, stiff, lever = layout.norms(*forces, *rounded)
+        at_work += [
             float(np.linalg.norm(self.rigid.spring_forces())),
             float(np.linalg.norm(of_bodies[self.rigid.prescribed()])),
         ]
         load_norm = float(np.hypot(on_nodes, float(np.linalg.norm(self.rigid.loads()))))
-        sizes = Magnitudes(load_norm, at_work, sum(norms[3:]) + self.fields.rounded(x))
+        stiff = max(stiff, self.bodies.largest) + lever + self.fields.rounded(x)
+        sizes = Magnitudes(load_norm, at_work, stiff)
         return closed(
             np.append(residual, of_bodies) if layout.last_rank else residual,
             sizes,

@@ -49,6 +49,8 @@ class Bodies(Term):
         unknowns: As given.
         scale: Mean diagonal of the tangent at rest, force/length.
         again: On one process, whether `add_tangent` writes once more what it has written last.
+        largest: Norm of `stiff` over all ranks in the largest state accepted so far, force. What is
+            left of that state where it has gone back to zero is its rounding.
     """
 
     def __init__(self, bulk: Bulk, unknowns: NodeUnknowns) -> None:
@@ -57,7 +59,7 @@ class Bodies(Term):
         self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
         self._temperatures = {name: Prescribed(1) for name in bulk.heated}
-        self.again = False
+        self.again, self.largest = False, 0.0
         self._inner = np.zeros(0)
         #: Displacement and forces at the last tangent.
         self._written: tuple[Vec, Floats] | None = None
@@ -140,7 +142,16 @@ class Bodies(Term):
     @override
     def accept(self, u: Floats) -> float:
         self.bulk.commit(self._owned(u))
+        self._take_size(u)
         return 0.0
+
+    @override
+    def persistent(self) -> Arrays:
+        return {"bodies.largest": np.array(self.largest)}
+
+    @override
+    def restore(self, kept: Arrays) -> None:
+        self.largest = float(kept["bodies.largest"])
 
     @override
     def histories(self) -> list[Arrays]:
@@ -150,6 +161,13 @@ class Bodies(Term):
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for history in self.bulk.histories.values():
             history.restore(next(kept))
+        self._take_size(u)
+
+    def _take_size(self, u: Floats) -> None:
+        """Take note of how large an accepted state is; collective."""
+        stiff = self.stiff(u)
+        size = float(self.unknowns.comm.allreduce(float(stiff @ stiff)) ** 0.5)
+        self.largest = max(self.largest, size)
 
     def stiff(self, u: Floats) -> Floats:
         """Forces of nodes that move alone, `K_ii u_i`, of those this rank owns: see `round_off`."""

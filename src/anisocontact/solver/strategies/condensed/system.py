@@ -244,5 +244,6 @@ class ContactSystem(AssembledSystem):
         supports = float(np.sqrt(np.mean(outside**2)))
         springs = float(np.linalg.norm(self._rigid.spring_forces()))
         forces = float(np.linalg.norm(self.forces))
-        stiff = float(np.linalg.norm(self._stiff * u)) + self._assembly.acting.lever()
+        stiff = max(float(np.linalg.norm(self._stiff * u)), self._assembly.bodies.largest)
+        stiff += self._assembly.acting.lever()
         return Magnitudes(self._load_norm, [forces, supports, springs], stiff)
