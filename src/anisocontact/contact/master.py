@@ -182,8 +182,12 @@ class Master(Protocol):
         """
         return None
 
-    def immovable(self, fixed: Flags) -> bool:
-        """Whether it cannot give way where local nodes are fixed, (nodes, 3); collective."""
+    def take_fixed(self, fixed: Flags) -> None:
+        """Learn which displacements of the local nodes are prescribed, (nodes, 3); collective."""
+        return
+
+    def immovable(self, normal: Floats) -> bool | Flags:
+        """Whether it cannot give way, as a whole or along the normal of each point, (n, 3)."""
         return self.body is None or not self.body.free
 
     def local_names(self, nodes: Locals) -> Locals:

@@ -39,6 +39,7 @@ class MeshedMaster(Master):
         self._nodes = Nodes(sides.reference, np.zeros_like(sides.reference))
         self._hint: FacetProjections = sides.project(sides.reference)
         self._accepted = (self._gathered.local(sides.reference), self._hint)
+        self._rests = False
         self.take(law, law)
 
     @property
@@ -103,9 +104,13 @@ class MeshedMaster(Master):
         return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
 
     @override
-    def immovable(self, fixed: Flags) -> bool:
+    def take_fixed(self, fixed: Flags) -> None:
         here = bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
-        return all(self._comm.allgather(here))
+        self._rests = all(self._comm.allgather(here))
+
+    @override
+    def immovable(self, normal: Floats) -> bool | Flags:
+        return self._rests
 
     @override
     def look(self, x: Floats) -> Seen:

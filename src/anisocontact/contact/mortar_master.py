@@ -32,6 +32,7 @@ from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
+from anisocontact.contact.points import unmoved
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -79,6 +80,8 @@ class MortarMaster(MeshedMaster):
         self._points = points
         self._resting: Sequence[Resting] = ()
         self._flags: Sequence[Resting] = ()
+        self._prescribed: Flags | None = None
+        self._fixed: Flags | None = None
         self._fold = Fold(points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
@@ -196,9 +199,10 @@ class MortarMaster(MeshedMaster):
         return [numbers_of(then, gathered) for then in thens]
 
     def _spread_flags(self) -> None:
-        """Take what rests among gathered nodes as well; collective."""
+        """Take what is held among gathered nodes as well; collective."""
         spread = self._gathered.everywhere
         self._flags = [(spread(there), direction) for there, direction in self._resting]
+        self._fixed = None if self._prescribed is None else spread(self._prescribed)
 
     @override
     def answer(
@@ -249,6 +253,21 @@ class MortarMaster(MeshedMaster):
             state["xi"], carried = then
             self._then = replace(self._then, carried=carried)
             self._at = self._placed(self._at.weights)
+
+    @override
+    def take_fixed(self, fixed: Flags) -> None:
+        super().take_fixed(fixed)
+        self._prescribed = fixed
+        self._spread_flags()
+
+    @override
+    def immovable(self, normal: Floats) -> bool | Flags:
+        if self._rests or self._fixed is None:
+            return self._rests
+        weights = self._at.weights
+        there = self._fixed[self._gathered.local_names(weights.masters)]
+        moving = np.abs(weights.shares)[:, :, None] * ~there
+        return self._located & unmoved(moving.sum(axis=1), normal)
 
     @property
     @override

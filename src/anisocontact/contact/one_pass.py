@@ -29,6 +29,8 @@ from anisocontact.mesh.node_unknowns import NodeUnknowns
 _STORED = {"adhesion": "energy_adhesion", "normal": "energy_normal"}
 _DISSIPATED = {"friction": "dissipation", "viscous": "dissipation_viscous"}
 
+#: Gap that is none, over the size of a slave facet.
+TOUCHING = 1e-6
 #: What of a response is kept beside its state.
 _KEPT = ("traction", "normal", "directions_adhesion", "directions_friction", "failure")
 
@@ -98,6 +100,7 @@ class Pass:
         self.trials = Trials(points, master, law, self.state, self._comm)
         check_start(self, points.size)
         self._augmentation = augmentation
+        self._fixed: Flags | None = None
         if augmentation is not None:
             self.trials.augment(augmentation, points.size)
         self._begin()
@@ -169,9 +172,19 @@ class Pass:
             resting: Nodes that are held where they are along directions.
         """
         self.master.take_resting(resting, self.state)
-        held = self.slave_points.held(fixed, self.last.normal)
-        self.trials.immovable = held & self.master.immovable(fixed)
+        self.master.take_fixed(fixed)
+        self._fixed = fixed
         self._begin()
+
+    def undetermined(self) -> int:
+        """Slave points whose pressure nothing says, over all ranks, accepted increment; collective.
+
+        They touch, and supports hold them and what they meet along the normal.
+        """
+        last = self.last
+        met = self.master.located(last.state) & (last.gap <= TOUCHING * self.slave_points.size)
+        own = self.trials.immovable & met if self.trials.augmented else met[:0]
+        return int(self._comm.allreduce(int(np.count_nonzero(own))))
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -269,6 +282,9 @@ class Pass:
 
     def _begin(self) -> None:
         self._way: list[Slid] = []
+        if self._fixed is not None:
+            held = self.slave_points.held(self._fixed, self.last.normal)
+            self.trials.immovable = held & self.master.immovable(self.last.normal)
         self.trials.begin(self.state, self.accepted)
 
     @property

@@ -79,8 +79,7 @@ class SlavePoints:
         """
         # images of nodes have the numbers after them, row by row, see `Sweep`
         moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes % max(len(fixed), 1)]
-        free = moving.any(axis=1)
-        return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
+        return unmoved(moving.any(axis=1), normal)
 
     def peaks(self, areas: Floats) -> Flags:
         """Points whose tractions count among peaks, of those with some areas, (n,)."""
@@ -158,3 +157,13 @@ class SlavePoints:
         cross = self._sign[:, None] * there.normals.reshape(-1, 3)
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
+
+
+def unmoved(free: Floats | Flags, normal: Floats) -> Flags:
+    """Points that do not move along the normal.
+
+    Args:
+        free: Share of each displacement that is free, (n, 3).
+        normal: At the points, (n, 3).
+    """
+    return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)

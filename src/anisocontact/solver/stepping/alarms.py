@@ -12,6 +12,12 @@ RELAXED = (
     "the multipliers of the contacts did not converge, so this increment, and later ones like it, "
     "have penalties instead; the summary has the penetration"
 )
+#: What is said of points whose pressure nothing says.
+HELD = (
+    "where supports hold both sides along the normal: no equilibrium says what the pressure is "
+    "there, it is left to the penalty, zero where nothing overlaps, and what presses the sides "
+    "together there is in the reactions of these supports alone"
+)
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4
 
@@ -43,6 +49,9 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
     for behind in accepted.behind:
         yield f"behind {behind.body} {behind.master}", str(behind)
+    for name, count in accepted.undetermined.items():
+        points = "slave point touches" if count == 1 else "slave points touch"
+        yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
     if accepted.residuals[-1] > UNBALANCED:

@@ -59,6 +59,8 @@ class Accepted:
         energies: See `Problem.energies`.
         ran_off: Slave points that left the end of their master in it, by name of the contact, each
             (k, 3), length; contacts without any are left out.
+        undetermined: Slave points that touch where supports hold both sides, by name of the
+            contact; contacts without any are left out.
         turned: How far each body at small strain has turned, by name.
         imbalance: What is left open in the balance of energy.
         behind: Bodies of which a part lies behind their masters.
@@ -92,6 +94,7 @@ class Accepted:
     reactions: dict[str, Floats]
     energies: dict[str, float]
     ran_off: dict[str, Floats]
+    undetermined: dict[str, int]
     turned: dict[str, BodyRotation]
     imbalance: Imbalance
     behind: tuple[Behind, ...] = ()

@@ -356,6 +356,7 @@ class Solver:
         last = increment == step.increments and done == 1.0
         contacts, energies = self.problem.contacts, self.problem.energies()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
+        held = {c.name: c.undetermined() for c in contacts}
         return Accepted(
             step=step.name,
             step_index=self.place.step,
@@ -369,6 +370,7 @@ class Solver:
             reactions=self.problem.reactions(),
             energies=energies,
             ran_off=ran_off,
+            undetermined={name: count for name, count in held.items() if count},
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
             behind=tuple(self.problem.sides.partly),

@@ -1,0 +1,64 @@
+"""Nodes that supports hold on both sides of a contact: no equilibrium says what the pressure is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact
+from anisocontact.laws import Friction
+from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.stepping.alarms import Alarms
+from anisocontact.solver.stepping.report import Accepted
+
+WALL = {"low.left": {"x": 0.0, "y": 0.0}, "up.left": {"x": 0.0, "y": 0.0}}
+
+
+def _run(strategy: str, columns: int = 4) -> tuple[list[Accepted], Contact]:
+    """Two beams clamped at one wall, pressed together and bent to and fro; corners at one place."""
+    low = make_shape("rectangle", origin=(0, -1), size=(4, 1), cells=(4, 2))
+    up = make_shape("rectangle", origin=(0, 0), size=(4, 1), cells=(columns, 2))
+    model = build_mesh([Body("low", low), Body("up", up)], idealisation=PlaneStrain())
+    steel = make_material("linear-elastic", E=1e4, nu=0.0)
+    contact = Contact(model, "up.bottom", "low.top", Friction(coefficients=0.2))
+    problem = Problem(model, {"low": steel, "up": steel}, [contact])
+    squeeze = {"low.bottom": 1.0, "up.top": 1.0}
+    steps = [Step("press", 1, WALL, pressure=squeeze)]
+    for y in (0.3, -0.3):
+        ends = {"up.right": {"y": y}, "low.right": {"y": y}}
+        steps.append(Step("bend", 1, traction=ends))
+    return list(Solver(problem, steps, strategy=strategy).run()), contact
+
+
+def test_strategies_agree_on_the_reactions_of_both_clamps() -> None:
+    """The multiplier of the corner moved by rounding alone, and with it both reactions.
+
+    Requirement: what no equilibrium determines is the same whatever solves for it: supports carry
+    it, as they carry friction along directions that they hold. Tolerance: that of Newton's method.
+    """
+    (*_, one), contact = _run("direct")
+    (*_, other), _ = _run("condensed")
+    for group in WALL:
+        assert one.reactions[group] == pytest.approx(other.reactions[group], abs=1e-7)
+    corner = int(np.argmin(contact.points[:, 0]))
+    assert contact.last.pressure[corner] == 0.0
+
+
+def test_it_is_told_how_many_points_have_no_pressure() -> None:
+    """One line for the contact, in the first increment and never again."""
+    states, contact = _run("direct")
+    alarms = Alarms()
+    told = [text for accepted in states for text in alarms.of(accepted)]
+    (line,) = [text for text in told if "both sides" in text]
+    assert line.startswith(f"step 'press', increment 1: contact {contact.name!r}: 1 slave point")
+
+
+def test_a_corner_against_nodes_that_move_has_its_multiplier() -> None:
+    """With 3 facets over 4 the corner is held against the next nodes of the master as well.
+
+    Requirement: nothing is said where a node of the master that moves says what the pressure is.
+    """
+    states, _ = _run("direct", columns=3)
+    assert [one.undetermined for one in states] == [{}] * len(states)
