@@ -12,6 +12,7 @@ from anisocontact.contact.hints import MISSED, faceted, jumping_rules, overlappi
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.alarms import UNBALANCED
+from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, WARNED
@@ -72,20 +73,25 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
 
 
 def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, Any]:
-    """Largest turn of each body at small strain and largest residual of the energies so far.
+    """Largest turn of bodies at small strain, past cut faces, and residual of the energies so far.
 
     Args:
         accepted: An accepted increment.
         before: What this gave at the one before; empty at the start.
 
     Returns:
-        "turned", by body, "energy_residual", "relaxed" and "unbalanced", as JSON can have them.
+        "turned", by body, "past_cuts", by contact, "energy_residual", "relaxed" and "unbalanced",
+        as JSON can have them.
     """
     turned = dict(before.get("turned", {}))
     for name, now in accepted.turned.items():
         if name not in turned or now.angle > turned[name]["angle"]:
             entry = {"angle": now.angle, "strain": now.strain, "stress": now.stress}
             turned[name] = entry | {"time": accepted.time, "text": str(now)}
+    past = dict(before.get("past_cuts", {}))
+    for name, lost in accepted.past_cuts.items():
+        if lost > past.get(name, {}).get("share", 0.0):
+            past[name] = {"share": lost, "time": accepted.time}
     left = dict(before.get("energy_residual", {}))
     share = accepted.imbalance.share
     if not left or share > left["worst_share"]:
@@ -93,11 +99,12 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
         left |= {"worst_share": share, "worst_time": accepted.time, "cause": cause}
     so = {"relaxed": accepted.relaxed, "unbalanced": accepted.residuals[-1] > UNBALANCED}
     times = {key: [*before.get(key, []), *[accepted.time] * bool(now)] for key, now in so.items()}
-    return {"turned": turned, "energy_residual": left | {"share": share}, **times}
+    left |= {"share": share}
+    return {"turned": turned, "past_cuts": past, "energy_residual": left, **times}
 
 
 def of_models(summary: Mapping[str, Any]) -> list[str]:
-    """Bodies that turned beyond small strain, energies and forces out of balance, penalties.
+    """Bodies that turned beyond small strain or past cut faces, lost balance, penalties.
 
     Args:
         summary: Content of the summary, with what `worst_of_models` gave.
@@ -106,6 +113,10 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
         f"body {name!r}, at small strain, {turned['text']}, at time {turned['time']:.4g}; {CURE}"
         for name, turned in summary.get("turned", {}).items()
         if turned["angle"] > WARNED
+    ]
+    found += [
+        f"contact {name!r}: {PAST.format(past['share'])}, at time {past['time']:.4g}"
+        for name, past in summary.get("past_cuts", {}).items()
     ]
     left = summary.get("energy_residual")
     if left and left["worst_share"] > LARGE:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.report import Accepted
 from anisocontact.solver.system.rotations import CURE, WARNED
 
@@ -52,6 +53,8 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for name, count in accepted.undetermined.items():
         points = "slave point touches" if count == 1 else "slave points touch"
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
+    for name, lost in accepted.past_cuts.items():
+        yield f"past {name}", f"contact {name!r}: {PAST.format(lost)}"
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
     if accepted.residuals[-1] > UNBALANCED:

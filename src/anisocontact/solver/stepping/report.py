@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -64,6 +64,8 @@ class Accepted:
         turned: How far each body at small strain has turned, by name.
         imbalance: What is left open in the balance of energy.
         behind: Bodies of which a part lies behind their masters.
+        past_cuts: Largest share of its weight by which a slave node has turned with a sector past
+            the end of its master, by name of the contact; contacts without any are left out.
         relaxed: Whether penalties hold in it, as no multipliers were found.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -98,6 +100,7 @@ class Accepted:
     turned: dict[str, BodyRotation]
     imbalance: Imbalance
     behind: tuple[Behind, ...] = ()
+    past_cuts: dict[str, float] = field(default_factory=dict)
     relaxed: bool = False
     event: str = ""
     missed: str = ""

@@ -17,6 +17,7 @@ from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
+from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.overload import too_much_load
@@ -127,6 +128,7 @@ class Solver:
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
+        self._cut_faces = CutFaceWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
 
@@ -374,6 +376,7 @@ class Solver:
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
             behind=tuple(self.problem.sides.partly),
+            past_cuts=self._cut_faces.lost(),
             relaxed=outcome.relaxed,
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",

@@ -146,6 +146,12 @@ class TiedFaces:
                 raise InputError(text, "symmetry")
         return np.unique(np.concatenate(found))
 
+    def on_cuts(self) -> Ints:
+        """Nodes this rank owns on the cut faces of sectors."""
+        none = np.zeros(0, dtype=np.int64)
+        sides = (side for cut in self._cuts.values() for side in cut.sides)
+        return np.unique(np.concatenate([none, *(self._own(side) for side in sides)]))
+
     @property
     def axial(self) -> Ints:
         """Nodes this rank owns on the axes of sectors."""
