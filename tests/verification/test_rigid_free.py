@@ -243,7 +243,7 @@ def test_a_load_beyond_the_limit_of_friction(fe):
         Step("touch", 1, clamped(), motion={"die": {"z": 0.01}}),
         Step("pull", 2, motion={"die": {"x": None}}, load={"die": {"x": 8.0}}),
     ]
-    with pytest.raises(StoppedError, match="'die' along x: what touches it slides"):
+    with pytest.raises(StoppedError, match=r"'die' come to 4 along \(1, 0, 0\), and friction"):
         list(Solver(block.problem, steps, limits=Limits(smallest=1e-3)).run())
     force, _ = block.contact.resultant()
     assert force[0] / force[2] == pytest.approx(0.2, rel=5e-3)

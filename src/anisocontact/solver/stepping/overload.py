@@ -1,22 +1,24 @@
-"""Loads on a free body that friction cannot hold, told where a run stops.
+"""Loads on a free body that friction cannot hold, told where a part of an increment fails.
 
-A body that only contact holds cannot carry more along a flat contact than the friction ellipse
-allows: `mu N` in the direction of the load, N what presses it on. There is no equilibrium to be
-found, and Newton's method ends in whatever it meets first.
+A body that only contact holds cannot carry more along it than friction allows: `mu N` in the
+direction of the load on a flat contact, N what presses it on, and on others the limit load of
+limit analysis. There is no equilibrium to be found beyond, and Newton's method ends in whatever it
+meets first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
+from anisocontact.solver.stepping.limit_load import Limit, PressedPoints, limit
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.terms.free_body import FreeBody
+from anisocontact.solver.terms.free_modes import ConnectedBody
 
 #: Sum of the normal forces over the sum of their sizes from which on a contact is flat.
 FLAT = 0.99
@@ -24,29 +26,46 @@ FLAT = 0.99
 FREE = 0.99
 #: Load over the limit of friction that is too much: below, something else is the cause.
 TOO_MUCH = 1.001
-#: Tangential load over the normal one that is none.
-NONE = 1e-9
+#: Share of what friction can hold that the accepted loads have to have reached where the loads do
+#: not say what presses a body on, which changes along an increment, or loads of later ones count.
+NEARLY = 0.97
+#: Gap that is none, over the size of a facet.
+TOUCHING = 1e-6
+#: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted.
+MANY = 2
+#: Share of a motion that is a turn from which on a moment is told.
+TURNS = 0.1
+#: What can be done about it.
+CURE = "load it less, press it more, or lead it by displacements"
 
 
 @dataclass(frozen=True)
-class _ContactLoad:
-    """What contact carries of a body.
+class _Driven:
+    """A body that loads may drive along its contacts.
 
     Attributes:
-        normal: Direction in which contact pushes the body, (3,).
-        force: Normal force, force.
-        pairs: Contacts with the share of each in it.
+        name: In words.
+        contacts: Its contacts, each with 1 where the body is the slave, and -1 where the master.
+        centre: Point that moments are about, (3,), length.
+        size: Of the body, length.
+        motions: Translations and turns times the size that only contact can hold, (k, 6).
+        load: Force and moment over the size, (6,), at the fraction that is looked at.
+        before: The same in the accepted state.
     """
 
-    normal: Floats
-    force: float
-    pairs: Sequence[tuple[Contact, float]]
+    name: str
+    contacts: Sequence[tuple[Contact, float]]
+    centre: Floats
+    size: float
+    motions: Floats
+    load: Floats
+    before: Floats
 
 
 def too_much_load(
     problem: Problem, fraction: float, over: float = TOO_MUCH, by: Contact | None = None
 ) -> str:
-    """Which loads on a free body friction cannot hold; empty if there are none, on all ranks.
+    """Which loads on bodies friction cannot hold; empty if there are none, on all ranks.
 
     Args:
         problem: The problem, in the last accepted state.
@@ -54,91 +73,229 @@ def too_much_load(
         over: Load over the limit of friction that is too much.
         by: Contact that has to be the only one that holds the body; any if left out.
     """
-    if not problem.stabilisation.loose:
+    bodies = _driven(problem, fraction)
+    if by is not None:
+        bodies = [one for one in bodies if all(c is by for c, _ in one.contacts)]
+    return "; ".join(told for told in (_told(problem, one, over) for one in bodies) if told)
+
+
+def exhausted(problem: Problem) -> str:
+    """As of `too_much_load` at the end of the step, of bodies that friction hardly holds now."""
+    told = (_told(problem, one, TOO_MUCH, soon=True) for one in _driven(problem, 1.0))
+    return "; ".join(text for text in told if text)
+
+
+def past_holding(problem: Problem, fraction: float, cuts: int) -> bool:
+    """Whether a part is to be the last one since friction cannot hold a deformable body.
+
+    Rigid surfaces are left out: parts in which nothing holds these end soon.
+
+    Args:
+        problem: The problem, in the last accepted state.
+        fraction: Fraction of the step at which the part ends.
+        cuts: Cuts of this increment so far.
+    """
+    if not cuts:
+        return False
+    told = [_told(problem, one, TOO_MUCH) for one in _deformable(problem, fraction)]
+    if cuts > MANY:
+        told += [_told(problem, one, TOO_MUCH, soon=True) for one in _deformable(problem, 1.0)]
+    return any(told)
+
+
+def _driven(problem: Problem, fraction: float) -> list[_Driven]:
+    return [*_deformable(problem, fraction), *_rigid(problem, fraction)]
+
+
+def _told(problem: Problem, body: _Driven, over: float, soon: bool = False) -> str:
+    """Why friction does not hold a body, in a line; empty where it may.
+
+    Args:
+        problem: The problem.
+        body: The body.
+        over: Load over the limit of friction that is too much.
+        soon: Whether the loads are those of later increments.
+    """
+    points, touched = _pressed(problem, body)
+    by_load = None if points is None else _pressed_by_load(body, points)
+    if points is None or not (touched or by_load):
         return ""
-    problem.loads.set_load_factor(fraction, problem.dt)
-    load = problem.loads.force(problem.u.x.array.reshape(-1, 3))
-    problem.loads.set_load_factor(problem.load_factor, problem.dt)
-    found = list(_found(problem, problem.layout.assembled(load).reshape(-1, 3), over, by))
-    return "; ".join(found)
+    found = limit(by_load or points, body.motions, body.load)
+    if found is None or not found.held * over < 1.0:
+        return ""
+    if soon or by_load is None:
+        now = limit(points, body.motions, body.before) if touched else None
+        if now is None or not now.held * NEARLY < 1.0:
+            return ""
+    when = " at the end of the step" if soon else ""
+    slips = _slipping(body) if touched else ""
+    return f"{_line(body, by_load or points, found, when)}: {CURE}{slips}"
 
 
-def _found(problem: Problem, load: Floats, over: float, by: Contact | None) -> Iterator[str]:
+def _deformable(problem: Problem, fraction: float) -> Iterator[_Driven]:
+    """Deformable bodies that only contact holds, with those that lead their faces."""
+    x, u = problem.model.space.tabulate_dof_coordinates(), problem.u.x.array.reshape(-1, 3)
     for free in problem.stabilisation.loose:
-        if by is not None and any(contact is not by for contact in free.contacts):
-            continue
-        force = problem.comm.allreduce(load[free.body.nodes].sum(axis=0))
-        held = _holding(problem, free)
-        if held is None:
-            continue
-        normal = held.normal
-        pressed = held.force
-        if free.moves_along(normal) > FREE:
-            pressed = max(float(-force @ normal), 0.0)
-        tangential = force - (force @ normal) * normal
-        size = float(np.linalg.norm(tangential))
-        if size <= NONE * max(pressed, float(np.linalg.norm(force))):
-            continue
-        along = tangential / size
-        share = sum(part * _limit(problem, contact, along) for contact, part in held.pairs)
-        if free.moves_along(along) > FREE and size > over * share * pressed:
-            yield (
-                f"the loads on body {free.body.name!r} come to {size:.4g} along {_shown(along)}, "
-                f"and friction holds {share * pressed:.4g} there at most, {share:.4g} of the "
-                f"normal force {pressed:.4g}: load it less, press it more, or hold it by "
-                "displacements"
-            )
+        body = free.body
+        arms = (x + u)[body.nodes] - body.centre
+        loads = []
+        for at in (fraction, problem.load_factor):
+            problem.loads.set_load_factor(at, problem.dt)
+            force = problem.layout.assembled(problem.loads.force(u)).reshape(-1, 3)[body.nodes]
+            moment = np.cross(arms, force).sum(axis=0)
+            local = np.concatenate([force.sum(axis=0), moment / body.size])
+            loads.append(problem.comm.allreduce(local) + _leads(problem, body, at))
+        problem.loads.set_load_factor(problem.load_factor, problem.dt)
+        sides = [(c, {problem.model.body_of(g) for g in c.groups[1:]}) for c in free.contacts]
+        yield _Driven(
+            f"body {body.name!r}",
+            [
+                (c, 1.0 if problem.model.body_of(c.slave) in body.parts else -1.0)
+                for c, masters in sides
+                if not (masters & set(body.parts) and problem.model.body_of(c.slave) in body.parts)
+            ],
+            body.centre,
+            body.size,
+            free.left,
+            *loads,
+        )
 
 
-def _holding(problem: Problem, free: FreeBody) -> _ContactLoad | None:
-    """Contact of a body in the accepted state; None where it is not flat, or there is none."""
-    total, sizes, pairs = np.zeros(3), 0.0, []
-    for contact in free.contacts:
-        weights = contact.areas * contact.last.pressure
-        push = problem.comm.allreduce(weights @ contact.last.normal)
-        size = float(problem.comm.allreduce(weights.sum()))
-        of_slave = problem.model.body_of(contact.slave) in free.body.parts
-        total += push if of_slave else -push
-        sizes += size
-        pairs.append((contact, size))
-    pushed = float(np.linalg.norm(total))
-    if not pushed > FLAT * sizes > 0.0:
+def _leads(problem: Problem, body: ConnectedBody, fraction: float) -> Floats:
+    """Loads on rigid bodies that faces of a body follow, as of `_Driven.load`."""
+    total = np.zeros(6)
+    for rigid, faces in problem.rigid.coupled.items():
+        if any(problem.model.body_of(face.group) in body.parts for face in faces):
+            force, moment = np.split(problem.rigid.load(rigid, fraction), 2)
+            moment = moment + np.cross(rigid.position - body.centre, force)
+            total += np.concatenate([force, moment / body.size])
+    return total
+
+
+def _rigid(problem: Problem, fraction: float) -> Iterator[_Driven]:
+    """Rigid surfaces that loads drive."""
+    for body in problem.rigid.free:
+        free = ~problem.rigid.holds(body)
+        contacts = problem.rigid.contacts[body]
+        if not (contacts and free.any()) or problem.rigid.coupled[body]:
+            continue
+        size = problem.rigid.length_of_turns(body)
+        scale = np.repeat([1.0, 1.0 / size], 3)
+        loads = [problem.rigid.load(body, at) * scale for at in (fraction, problem.load_factor)]
+        yield _Driven(
+            f"rigid body {body.name!r}",
+            [(contact, -1.0) for contact in contacts],
+            body.position,
+            size,
+            np.eye(6)[free],
+            *loads,
+        )
+
+
+def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, bool]:
+    """Where contact presses on a body, on all ranks; where it touches before anything presses.
+
+    Returns:
+        The points, with their areas for forces before anything presses; None where the law is one
+        in Python. Whether something presses.
+    """
+    found = []
+    for contact, side in body.contacts:
+        friction = contact.interface.tangential.friction
+        if friction is None:
+            return None, False
+        last, areas = contact.last, contact.areas
+        touching = contact.located() & (last.gap <= TOUCHING * contact.facet_size)
+        rows = [
+            (contact.points - body.centre) / body.size,
+            side * last.normal,
+            areas * last.pressure,
+            areas * touching,
+            _resistance(friction, last.directions_friction, last.normal),
+        ]
+        every = problem.comm.allgather(rows)
+        found.append([np.concatenate(column) for column in zip(*every, strict=True)])
+    if not found:
+        return None, False
+    columns = zip(*found, strict=True)
+    arms, normal, force, area, rubs = (np.concatenate(column) for column in columns)
+    touched = bool(force.any())
+    weight = force if touched else area
+    closed = weight > 0.0
+    if not closed.any():
+        return None, False
+    return PressedPoints(arms[closed], normal[closed], weight[closed], rubs[closed]), touched
+
+
+def _pressed_by_load(body: _Driven, points: PressedPoints) -> PressedPoints | None:
+    """The points with the forces that the loads press with; None where these do not say it."""
+    total = points.force @ points.normal
+    pushed, sizes = float(np.linalg.norm(total)), float(points.force.sum())
+    normal = total / max(pushed, np.finfo(float).tiny)
+    free = float(np.linalg.norm(body.motions[:, :3] @ normal))
+    pressed = -float(body.load[:3] @ normal)
+    if not (pushed > FLAT * sizes and free > FREE and pressed > 0.0):
         return None
-    return _ContactLoad(
-        total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs]
+    return replace(points, force=points.force * (pressed / sizes))
+
+
+def _resistance(friction: Friction, axes: Floats, normal: Floats) -> Floats:
+    """`PressedPoints.friction` at points with these axes and normals.
+
+    Dual to `T . F T <= N^2` with F of two coefficients [Konyukhov Schweizerhof 2006, eq. (43)]; of
+    two surfaces the most that there is in any direction.
+    """
+    values = friction.named[1]
+    across = np.eye(3) - np.einsum("ni,nj->nij", normal, normal)
+    if friction.frictionless:
+        return np.zeros_like(across)
+    if "coefficients" not in values:
+        first, *others = values["alpha"]
+        return np.asarray((first + sum(max(value, 0.0) for value in others)) * across)
+    first, second = values["coefficients"]
+    if first == second:
+        return np.asarray(first * across)
+    found: Floats = np.zeros(across.shape)
+    found[:, :2] = axes * np.array([first, second])[:, None]
+    unknown = ~axes.any(axis=(1, 2))
+    found[unknown] = max(first, second) * across[unknown]
+    return found
+
+
+def _line(body: _Driven, points: PressedPoints, found: Limit, when: str) -> str:
+    """What the loads come to, and what friction holds, along the motion that it holds least."""
+    shift, turn = np.split(found.motion, 2)
+    pressed, share = float(points.force.sum()), ""
+    if np.linalg.norm(turn) <= TURNS * np.linalg.norm(shift):
+        normal = points.force @ points.normal
+        normal /= np.linalg.norm(normal) or 1.0
+        free = np.linalg.pinv(body.motions[:, :3]) @ body.motions[:, :3]
+        force = free @ body.load[:3]
+        force = force - (force @ normal) * normal
+        size = float(np.linalg.norm(force))
+        what = f"{size:.4g} along {_shown(force / size)}"
+        share = f", {found.held * size / pressed:.4g} of the normal force {pressed:.4g}"
+    else:
+        spin = turn / body.size
+        size = 1.0 / float(np.linalg.norm(spin))
+        through = body.centre + np.cross(spin, shift) / (spin @ spin)
+        what = f"a moment of {size:.4g} about {_shown(spin * size)} through {_shown(through)}"
+    return (
+        f"the loads on {body.name} come to {what}{when}, and friction holds "
+        f"{found.held * size:.4g} there at most{share}"
     )
 
 
-def _limit(problem: Problem, contact: Contact, along: Floats) -> float:
-    """Friction over pressure along a direction, the mean over the normal force of a contact."""
-    friction = contact.interface.tangential.friction
-    if friction is None:  # a law in Python
-        return np.inf
-    weights = contact.areas * contact.last.pressure
-    each = _coefficient(friction, contact.last.directions_friction, along)
-    top, bottom = problem.comm.allreduce(np.array([weights @ each, weights.sum()]))
-    return float(top / bottom) if bottom > 0.0 else np.inf
-
-
-def _coefficient(friction: Friction, axes: Floats, along: Floats) -> Floats:
-    """Friction over pressure along a direction at points with these axes, (n,).
-
-    From `d . F d` with F of two coefficients [Konyukhov Schweizerhof 2006, eq. (43)]; of two
-    surfaces the most that there is in any direction.
-    """
-    values = friction.named[1]
-    if friction.frictionless:
-        return np.zeros(len(axes))
-    if "coefficients" not in values:
-        first, *others = values["alpha"]
-        return np.full(len(axes), first + sum(max(value, 0.0) for value in others))
-    first, second = values["coefficients"]
-    if first == second and not axes.any():
-        return np.full(len(axes), first)
-    inside = axes @ along / np.array([first, second])
-    sizes = np.linalg.norm(inside, axis=1)
-    return np.where(sizes > 0.0, 1.0 / np.maximum(sizes, np.finfo(float).tiny), max(first, second))
+def _slipping(body: _Driven) -> str:
+    """How many points slip in the last state."""
+    told = []
+    for contact, _ in body.contacts:
+        counts = contact.counts()
+        closed = counts["stick"] + counts["slip"]
+        if closed:
+            told.append(f"{counts['slip']} of {closed} points that touch slip in {contact.name!r}")
+    return f"; {', '.join(told)}" if told else ""
 
 
 def _shown(vector: Floats) -> str:
-    return "(" + ", ".join(f"{v + 0.0:g}" for v in vector.round(2)) + ")"
+    return "(" + ", ".join(f"{v + 0.0:g}" for v in vector.round(2) + 0.0) + ")"

@@ -20,7 +20,7 @@ from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
-from anisocontact.solver.stepping.overload import too_much_load
+from anisocontact.solver.stepping.overload import exhausted, past_holding, too_much_load
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
@@ -297,7 +297,7 @@ class Solver:
         self._turns.permitted = pace.cuttable
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
-        overloaded = pace.cuts > 0 and too_much_load(self.problem, whole / step.increments) != ""
+        overloaded = past_holding(self.problem, whole / step.increments, pace.cuts)
         with self._options:
             return attempts.solve(first, last, ratio, pace, overloaded)
 
@@ -309,6 +309,8 @@ class Solver:
             self.place.lost = outcome
         if outcome.final or not pace.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
+        # a first cut is nothing out of the ordinary
+        more = self._overload(step) if cuts else ""
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
@@ -317,18 +319,23 @@ class Solver:
                     time=self._time(step, pace.increment, pace.done),
                     size=tried,
                     next_size=pace.part,
-                    reason=result.reason,
+                    reason="; ".join(text for text in (result.reason, more) if text),
                     iterations=result.iterations,
                     count=len(outcome.culprits),
                     culprits=outcome.culprits[:NAMED],
                 )
             )
 
+    def _overload(self, step: Step) -> str:
+        """Which loads friction cannot hold at the end of the increment, or of the step."""
+        increment = self.place.pace.increment
+        return too_much_load(self.problem, increment / step.increments) or exhausted(self.problem)
+
     def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
         """Say why an increment has no solution."""
         outcome = self.place.lost or outcome
         increment, culprits = self.place.pace.increment, outcome.culprits
-        reason = too_much_load(self.problem, increment / step.increments)
+        reason = self._overload(step)
         if reason:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])

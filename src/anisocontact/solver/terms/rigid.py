@@ -199,6 +199,18 @@ class RigidBodies(Term):
         parts = [self._drives[b].load(self._load_factor) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
+    def load(self, body: RigidBody, fraction: float) -> Floats:
+        """Force and moment on a body at a fraction of the step, (6,)."""
+        return self._drives[body].load(fraction)
+
+    def holds(self, body: RigidBody) -> Flags:
+        """Which components the step prescribes, or springs hold, (6,)."""
+        return np.asarray(self._drives[body].prescribed | (body.springs > 0.0))
+
+    def length_of_turns(self, body: RigidBody) -> float:
+        """Length by which turns of a body are taken for lengths."""
+        return float(self._scales[body][3])
+
     @property
     def rest(self) -> bool:
         """Whether no motion of them is prescribed along the step."""

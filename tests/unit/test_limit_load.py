@@ -1,0 +1,91 @@
+"""Limit loads of friction against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from anisocontact.solver.stepping.limit_load import PressedPoints, limit
+
+MU = 0.3
+EVERY = np.eye(6)
+
+
+def _points(arms: np.ndarray, normal: np.ndarray, force: np.ndarray) -> PressedPoints:
+    across = np.eye(3) - np.einsum("ni,nj->nij", normal, normal)
+    return PressedPoints(arms, normal, force, MU * across)
+
+
+def _ring(count: int = 24) -> PressedPoints:
+    """Points of unit normal force in all on a circle of radius 1 in the plane z = 0."""
+    at = 2.0 * np.pi * np.arange(count) / count
+    arms = np.column_stack([np.cos(at), np.sin(at), 0.0 * at])
+    normal = np.tile([0.0, 0.0, 1.0], (count, 1))
+    return _points(arms, normal, np.full(count, 1.0 / count))
+
+
+def test_a_force_and_a_moment_on_a_ring() -> None:
+    """Friction holds mu N along, and mu N r about the axis.
+
+    Source: balance of a rigid ring that slides, or turns about its axis. The tolerance is what the
+    least squares leave where points rest.
+    """
+    pressed = np.array([0.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+    along, about = pressed.copy(), pressed.copy()
+    along[0], about[5] = 0.5, 0.5
+    for load in (along, about):
+        found = limit(_ring(), EVERY, load)
+        assert found is not None
+        assert found.held == pytest.approx(MU / 0.5, rel=1e-5)
+    assert found.motion[5] == pytest.approx(2.0, rel=1e-5)
+
+
+def test_a_force_beside_the_middle_is_held_less() -> None:
+    """Two points at a distance of 2, the force across their line through one of them.
+
+    Source: that point carries all of it, mu N / 2, the other one nothing.
+    """
+    arms = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    normal = np.tile([0.0, 0.0, 1.0], (2, 1))
+    load = np.array([0.0, 1.0, -1.0, 0.0, 0.0, 1.0])
+    found = limit(_points(arms, normal, np.array([0.5, 0.5])), EVERY, load)
+    assert found is not None
+    assert found.held == pytest.approx(0.5 * MU, rel=1e-4)
+
+
+def test_an_ellipse_holds_along_a_direction_what_its_radius_there_is() -> None:
+    """Coefficients 0.4 and 0.2 along x and y, a force at 30 degrees.
+
+    Source: the force is on the friction ellipse, `sqrt(T . F T) = N`.
+    """
+    ring = _ring()
+    friction = np.zeros((24, 3, 3))
+    friction[:, 0, 0], friction[:, 1, 1] = 0.4, 0.2
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    points = PressedPoints(ring.arms, ring.normal, ring.force, friction)
+    found = limit(points, EVERY, np.array([c, s, -1.0, 0.0, 0.0, 0.0]))
+    assert found is not None
+    assert found.held == pytest.approx(1.0 / np.hypot(c / 0.4, s / 0.2), rel=1e-5)
+
+
+def test_a_belt_slides_around_its_drum_alone() -> None:
+    """A belt over a quarter of a drum of radius 10 under two tensions of 1 and 0.5.
+
+    Source: it can turn about the axis; of the tensions the moment is 10 (1 - 0.5), of friction at
+    most mu r times the sum of the pressure, which is taken for 1.
+    """
+    at = np.linspace(np.pi / 4, 3 * np.pi / 4, 31)
+    normal = np.column_stack([np.cos(at), np.sin(at), 0.0 * at])
+    force = np.full(31, 1.0 / 31)
+    load = np.array([0.0, -1.0, 0.0, 0.0, 0.0, 5.0])
+    found = limit(_points(10.0 * normal, normal, force), EVERY[[0, 1, 5]], load)
+    assert found is not None
+    assert found.held == pytest.approx(MU * 10.0 / 5.0, rel=1e-3)
+
+
+def test_nothing_is_said_of_a_body_that_no_motion_is_left_to() -> None:
+    """Pressed from both sides along x and along z: it can slide along y alone, without a load."""
+    arms = np.array([[0.0, 0, -1], [0.1, 0, -1], [1, 0, 0], [1, 0.1, 0]])
+    normal = np.array([[0.0, 0, 1], [0, 0, 1], [-1, 0, 0], [-1, 0, 0]])
+    load = np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+    assert limit(_points(arms, normal, np.ones(4)), EVERY[:3], load) is None
