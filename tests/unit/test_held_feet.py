@@ -142,16 +142,18 @@ def _contact(codes: list[int]) -> Any:
 @pytest.mark.parametrize(
     ("codes", "residuals", "hops"),
     [
-        ([3, 6, 3, 6], [1.0, 0.5, 0.5, 0.5], True),
-        ([3, 6, 9, 3, 6], [1.0, 0.5, 0.5, 0.5, 0.5], True),
-        ([3, 6, 9, 12], [1.0, 0.5, 0.5, 0.5], False),
-        ([3, 6, 3, 3], [1.0, 0.5, 0.5, 0.5], False),
-        ([3, 6, 3, 6], [1.0, 0.5, 1e-3, 1e-5], False),
+        ([3, 6, 3, 6, 6, 6, 6], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.51], True),
+        ([3, 6, 9, 3, 6, 6, 6], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.51], True),
+        ([3, 6, 9, 12, 9, 12, 9], [1.0] * 7, True),
+        ([3, 6, 9, 12, 15, 18, 21], [1.0] * 7, False),
+        ([3, 6, 3, 3, 3, 3, 3], [1.0] * 7, False),
+        ([3, 6, 3, 6, 3, 6, 3], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.49], False),
+        ([3, 6, 3, 6, 3, 6], [1.0] * 6, False),
     ],
-    ids=["to and fro", "round a corner", "slides on", "once", "falls fast"],
+    ids=["to and fro", "round a corner", "later", "slides on", "once", "halved", "too early"],
 )
 def test_points_that_hop_are_held(codes, residuals, hops):
-    """Two returns to a facet within the last iterations, while the residual does not fall fast."""
+    """Two returns to a facet of late, where the residual has not halved in six iterations."""
     contact = _contact(codes)
     watch = StatusWatch([contact])
     for residual in residuals:

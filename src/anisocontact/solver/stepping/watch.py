@@ -16,8 +16,8 @@ MEMORY = 8
 CHANGES = 4
 #: Returns to a facet among them that make a point one that hops.
 RETURNS = 2
-#: Residual over that of two iterations before that is falling fast.
-FALLING = 0.1
+#: Iterations over which a residual that does not fall to `GAIN` of what it was has come to a halt.
+HALT, GAIN = 6, 0.5
 
 
 class StatusWatch:
@@ -47,12 +47,12 @@ class StatusWatch:
         self._residuals.append(residual)
 
     def hold(self) -> None:
-        """Hold points that hop on the facet where they are.
+        """Hold points that hop on the facet where they are, where that keeps the residual up.
 
-        Where the residual falls fast they come to rest by themselves.
+        While it falls they may come to rest by themselves, at the closest facet.
         """
         known = self._residuals
-        if len(known) < 3 or known[-1] <= FALLING * known[-3]:
+        if len(known) <= HALT or known[-1] <= GAIN * known[-1 - HALT]:
             return
         for contact, hops in zip(self._contacts, self.hopping(), strict=True):
             contact.hold(hops)
