@@ -28,9 +28,12 @@ def merge(parts: Sequence[MeshArrays]) -> MeshArrays:
     first = parts[0]
     for part in parts[1:]:
         if part.cell != first.cell:
+            simple = {"tetrahedron", "triangle"} & {first.cell, part.cell}
+            cure = "".join(f'; cell = "{cell}" makes a built-in shape of these' for cell in simple)
             raise InputError(
                 f"bodies {', '.join(first.bodies)} and {', '.join(part.bodies)}: "
-                f"all bodies of a mesh need the same cell, not {first.cell} and {part.cell}",
+                f"all bodies of a mesh need the same cell, not {first.cell} and {part.cell}"
+                + (cure if len(simple) == 1 else ""),
                 "mesh",
             )
     names = [name for part in parts for name in part.bodies]
