@@ -217,10 +217,29 @@ def test_points_at_the_border_of_the_master_are_named():
         watch.note(1.0)
     assert watch.alternating()[0].all()
     assert watch.on_border(0).tolist() == [False, True]
-    found = [Culprit("flipping", (0.0, 0.0, 0.0), "", border=bool(b)) for b in watch.on_border(0)]
-    told = _reason("no convergence", found)
+    found = [
+        Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=bool(b)) for b in watch.on_border(0)
+    ]
+    told = _reason("no convergence", found, [])
     assert "2 slave points alternates (chattering), 1 of them at the border" in told
-    assert "border" not in _reason("no convergence", found[:1])
+    assert "border" not in _reason("no convergence", found[:1], [])
+
+
+@pytest.mark.parametrize(
+    ("meshed", "nodes", "advice"),
+    [
+        (True, False, ": take the other side as the slave or take the pass mortar"),
+        (True, True, ": take the other side as the slave"),
+        (False, False, ": take the pass mortar"),
+        (False, True, ""),
+    ],
+)
+def test_advice_at_a_border_is_what_the_contact_can_have(meshed, nodes, advice):
+    """Requirement: no other side where the master is a surface, no pass that it has already."""
+    points = SimpleNamespace(at_nodes=nodes)
+    contact = SimpleNamespace(name="sole", of_two_groups=meshed, slave_points=points)
+    found = [Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=True)]
+    assert _reason("gone", found, [contact]).endswith(f"border of the master{advice}")
 
 
 def sticky(interface, most=10.0, width=1e-5):

@@ -390,6 +390,39 @@ def test_every_step_of_a_flow_is_looked_at(strategy: str, monkeypatch: pytest.Mo
     assert sum(asked) == 1
 
 
+def test_bodies_that_flow_in_vain_are_not_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was in the way of the attempts before is told, not how the last resort failed."""
+
+    def attempt(_: Attempts, way: Any) -> tuple[NewtonResult, list[Culprit]]:
+        reason = "the bodies do not come to rest" if way.flowing else "no convergence"
+        flowed.append(way.flowing)
+        kind = "inverted" if way.flowing else "flipping"
+        return NewtonResult(1, [1.0], reason), [Culprit(kind, (0.0, 0.0, 0.0), "here", "c")]
+
+    flowed: list[bool] = []
+    monkeypatch.setattr(Attempts, "_attempt", attempt)
+    step = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+    with pytest.raises(StoppedError, match="increment 1: no convergence; the status of 1 slave"):
+        list(Solver(_problem("plane"), [step], limits=Limits(smallest=1.0)).run())
+    assert flowed[-1]
+
+
+def test_the_first_cut_of_a_step_tells_which_bodies_it_leaves_free(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Requirement: that a body is free is often why a first part is hard; it is told once."""
+    failed = NewtonResult(1, [1.0], "no convergence")
+    monkeypatch.setattr(Attempts, "solve", lambda *_: Outcome(failed))
+    step = Step("press", 1, force={"block.top": {"z": -0.1}})
+    told: list[str] = []
+    with pytest.raises(StoppedError):
+        solver = Solver(_problem("plane"), [step], limits=Limits(smallest=0.05))
+        list(solver.run(on_cut=lambda cut: told.append(cut.reason)))
+    assert told[0].startswith("no convergence; body 'block' is free to move: translation along x")
+    assert told[1:] == ["no convergence"] * (len(told) - 1)
+    assert len(told) > 1
+
+
 def test_what_a_larger_part_has_shown_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     """The smallest part fails otherwise: the run still stops because equilibrium was lost."""
     lost = LostError(Culprit("behind", (0.0, 0.0, 0.0), "body 'block' has turned over", "c"))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
+from anisocontact.contact import Contact
 from anisocontact.contact.schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused
@@ -133,7 +135,7 @@ class Attempts:
         Returns:
             Whether one converged, and what kept the others from it.
         """
-        spent, self._failed = 0, None
+        spent, self._failed, failed = 0, None, ""
         found: list[Culprit] = []
         seen: set[str] = set()
         searching, full = _Way(first, ratio, full_steps=False), _Way(last)
@@ -154,12 +156,15 @@ class Attempts:
             # nothing but a smaller part can help
             if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent))
-            found = _graver(found, culprits)
+            # where bodies that flow find nothing that is not what was in the way
+            if not way.flowing or result.culprits:
+                failed, found = result.reason, _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
             if way is ways[-1] and not self._final and (alternates or pace.tiny or overloaded):
                 ways += self._last_resorts(way, pace.small or overloaded)
-        result = replace(result, iterations=spent, reason=_reason(result.reason, found))
+        reason = _reason(failed, found, self._problem.contacts)
+        result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()
         return Outcome(result, tuple(found), self._final or overloaded, hint, self._failed)
 
@@ -274,7 +279,7 @@ def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
     return now if grave(now[0].kind) <= grave(before[0].kind) else before
 
 
-def _reason(reason: str, culprits: list[Culprit]) -> str:
+def _reason(reason: str, culprits: list[Culprit], contacts: Sequence[Contact]) -> str:
     """Why it failed, by what caused it."""
     kind = culprits[0].kind if culprits else ""
     if kind == "law":
@@ -283,9 +288,19 @@ def _reason(reason: str, culprits: list[Culprit]) -> str:
         return "cells are turned inside out"
     if kind == "flipping":
         told = f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
-        border = sum(culprit.border for culprit in culprits)
-        advice = "take the other side as the slave, or the pass mortar if it has another"
-        return f"{told}, {border} of them at the border of the master: {advice}" if border else told
+        border = [culprit.contact for culprit in culprits if culprit.border]
+        if not border:
+            return told
+        advice = _advice([one for one in contacts if one.name in border])
+        return f"{told}, {len(border)} of them at the border of the master{advice}"
     if kind == "hopping":
         return f"{reason}; {len(culprits)} slave points alternate between facets"
     return reason
+
+
+def _advice(contacts: Sequence[Contact]) -> str:
+    """What helps where points go over the border of the master: what these contacts can have."""
+    sides = all(contact.of_two_groups for contact in contacts)
+    points = not any(contact.slave_points.at_nodes for contact in contacts)
+    ways = ["take the other side as the slave"] * sides + ["take the pass mortar"] * points
+    return f": {' or '.join(ways)}" if ways else ""

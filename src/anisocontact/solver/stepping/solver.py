@@ -309,8 +309,7 @@ class Solver:
             self.place.lost = outcome
         if outcome.final or not pace.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
-        # a first cut is nothing out of the ordinary
-        more = self._overload(step) if cuts else ""
+        more = self._hint(step, cuts)
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
@@ -325,6 +324,13 @@ class Solver:
                     culprits=outcome.culprits[:NAMED],
                 )
             )
+
+    def _hint(self, step: Step, cuts: int) -> str:
+        """What is told with a cut: which bodies a step leaves free, then what friction holds."""
+        if cuts:
+            return self._overload(step)
+        begins = self.place.before is None
+        return "; ".join(self.problem.stabilisation.notes) if begins else ""
 
     def _overload(self, step: Step) -> str:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
