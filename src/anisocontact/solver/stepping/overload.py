@@ -35,8 +35,11 @@ TOUCHING = 1e-6
 MANY = 2
 #: Share of a motion that is a turn from which on a moment is told.
 TURNS = 0.1
-#: What can be done about it.
+#: Share of the loads that friction holds which is no friction at all.
+NOTHING = 1e-9
+#: What can be done about it, and where there is no friction.
 CURE = "load it less, press it more, or lead it by displacements"
+WITHOUT = "hold it, or lead it by displacements"
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class _Driven:
         motions: Translations and turns times the size that only contact can hold, (k, 6).
         load: Force and moment over the size, (6,), at the fraction that is looked at.
         before: The same in the accepted state.
+        rigid: Whether it is a rigid surface.
     """
 
     name: str
@@ -60,6 +64,7 @@ class _Driven:
     motions: Floats
     load: Floats
     before: Floats
+    rigid: bool = False
 
 
 def too_much_load(
@@ -123,13 +128,17 @@ def _told(problem: Problem, body: _Driven, over: float, soon: bool = False) -> s
     found = limit(by_load or points, body.motions, body.load)
     if found is None or not found.held * over < 1.0:
         return ""
+    rubs = found.held > NOTHING
+    if body.rigid and not rubs:  # which of its components are free is told elsewhere
+        return ""
     if soon or by_load is None:
         now = limit(points, body.motions, body.before) if touched else None
         if now is None or not now.held * NEARLY < 1.0:
             return ""
     when = " at the end of the step" if soon else ""
     slips = _slipping(body) if touched else ""
-    return f"{_line(body, by_load or points, found, when)}: {CURE}{slips}"
+    cure = CURE if rubs else WITHOUT
+    return f"{_line(body, by_load or points, found, when)}: {cure}{slips}"
 
 
 def _deformable(problem: Problem, fraction: float) -> Iterator[_Driven]:
@@ -188,7 +197,9 @@ def _rigid(problem: Problem, fraction: float) -> Iterator[_Driven]:
             body.position,
             size,
             np.eye(6)[free],
-            *loads,
+            loads[0],
+            loads[1],
+            rigid=True,
         )
 
 
