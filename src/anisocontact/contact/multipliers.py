@@ -12,7 +12,7 @@ the displacements in one Newton iteration, `Uzawa` holds them while Newton's met
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -84,6 +84,15 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         )
 
 
+def augmentable(law: AugmentedLaw) -> bool:
+    """Whether a law is one of penalties alone, whose multipliers can follow the displacements."""
+    try:
+        check(Augmentation(multipliers=NEWTON), law)
+    except InputError:
+        return False
+    return True
+
+
 def simultaneous(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     """Whether a law lets its multipliers be found together with the displacements."""
     if not augmentation.tangential or law.tangential.in_python:
@@ -106,7 +115,8 @@ class ContactTrial:
             gap, or of which next to nothing is covered: they keep a penalty, (n,).
         slight: The latter of them, which keep one along the surface as well, (n,).
         covered: Share of the weight of each point that the master covers, above 0, (n,).
-        shared: Points that are slaves of other contacts with multipliers as well, (n,).
+        rigidity: How many times as stiff as the penalties points are, see `Multipliers.rigidity`,
+            (n, 2).
         far: Distances of the points from the origin, (n,), length.
         held: Projection on directions along which supports hold points and what they meet,
             (n, 3, 3), or none: tractions have nothing along them, multipliers have.
@@ -122,7 +132,7 @@ class ContactTrial:
     immovable: Flags
     slight: Flags
     covered: Floats
-    shared: Flags
+    rigidity: Floats
     far: Floats
     held: Floats | None
     closeness: Floats
@@ -144,8 +154,14 @@ class ContactTrial:
         the contacts sticks is a matter of rounding, and corrections find no end. Where a gap closes
         friction has that of the way there.
         """
-        shared = np.where(self.shared, 1.0 - self.covered / SHARED_RATIO, 1.0)
-        return np.column_stack([shared, shared * left_by(self.closeness)])
+        left = self.left
+        left[:, 1] *= left_by(self.closeness)
+        return left
+
+    @property
+    def left(self) -> Floats:
+        """The same where no gap closes, (n, 2)."""
+        return np.asarray(1.0 - self.covered[:, None] / self.rigidity)
 
     @property
     def remembers(self) -> Flags:
@@ -175,7 +191,10 @@ class Multipliers:
             history.
         factor: What they are multiplied with now.
         tangential: Whether there are multipliers of the tangential part.
+        exact: Whether no compliance is meant to stay, but where there is no other way.
     """
+
+    exact: ClassVar[bool] = True
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
@@ -190,6 +209,23 @@ class Multipliers:
     def factors(self) -> tuple[float, float]:
         """What normal penalty and stiffness of adhesion are multiplied with now."""
         return self.factor, self.factor * self._proportion if self.tangential else 1.0
+
+    @property
+    def penalties(self) -> Floats:
+        """Normal penalty and least stiffness of adhesion now, (2,), stress/length."""
+        return np.array(self._penalties) * self.factors
+
+    def rigidity(self, shared: Flags, covered: Floats) -> Floats:
+        """How many times as stiff as the penalties points are, infinite where they hold exactly.
+
+        Args:
+            shared: Points that are slaves of other contacts with multipliers as well, (n,).
+            covered: Share of the weight of each point that the master covers, above 0, (n,).
+
+        Returns:
+            Along the normal and the surface, (n, 2).
+        """
+        return np.repeat(np.where(shared, SHARED_RATIO, np.inf)[:, None], 2, axis=1)
 
     def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from.

@@ -29,7 +29,6 @@ from anisocontact.contact.multipliers import (
     RATIO,
     ROUNDED,
     SHARE,
-    SHARED_RATIO,
     ContactTrial,
     Multipliers,
     left_by,
@@ -50,7 +49,7 @@ class Base:
         multiplier: lambda as a vector, (n, 3), stress.
         traction: P, (n, 3), stress.
         residual: Change of P that takes the violation away, (n, 3), stress.
-        kept: What lambda is of P where no gap closes, (n, 1).
+        kept: What lambda is of P where no gap closes, along the normal and the surface, (n, 2).
     """
 
     multiplier: Floats
@@ -58,19 +57,21 @@ class Base:
     residual: Floats
     kept: Floats
 
-    def after(self, change: Floats, share: float) -> Floats:
+    def after(self, change: Floats, share: float, normal: Floats) -> Floats:
         """Multiplier after a step.
 
         Args:
             change: Change of the traction with the displacement of the step, (n, 3), stress.
             share: Share of the step that was taken.
+            normal: At the points, (n, 3).
 
         Returns:
             lambda as a vector, (n, 3), stress.
         """
         rest = (1.0 - share) * self.multiplier
         new = share * (self.traction + self.residual) + change
-        return np.asarray(rest + self.kept * new)
+        pressure = np.einsum("nd,nd->n", new, normal)[:, None] * normal
+        return np.asarray(rest + self.kept[:, 1:] * (new - pressure) + self.kept[:, :1] * pressure)
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,7 @@ class Semismooth(Multipliers):
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
         state["stiffer"] = (1.0 + step.start["stiffer"]) * ratio / self.ratio - 1.0
-        left = np.where(step.shared[:, None], 1.0, 1.0 - 1.0 / ratio)
+        left = np.where(np.isfinite(step.rigidity), 1.0, 1.0 - 1.0 / ratio)
         left[weak, 1] = 1.0
         left[overshot, 1] = 1.0 / part[overshot]
         deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
@@ -217,10 +218,11 @@ class Semismooth(Multipliers):
 
         The force of a node changes as much where little of its weight is covered; where supports
         hold a point along the normal, or next to nothing is covered, its penalty is what it is. At
-        shared points it is that of their compliance, see `ContactTrial.kept`.
+        points that are compliant it is that of their compliance, see `ContactTrial.kept`.
         """
-        most = np.where(step.shared, SHARED_RATIO, self._resolved(step))
-        ratio = np.repeat((most / step.covered)[:, None], 2, axis=1)
+        exact = np.isinf(step.rigidity)
+        most = np.where(exact, self._resolved(step), step.rigidity)
+        ratio = most / step.covered[:, None]
         ratio[step.immovable, 0] = 1.0
         if not self.tangential:
             ratio[:, 1] = self.ratio

@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.statuses import SLIP, STICK
+from anisocontact.contact.compliant import Compliant
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
@@ -18,6 +19,7 @@ from anisocontact.contact.multipliers import (
     AugmentedLaw,
     ContactTrial,
     Multipliers,
+    augmentable,
 )
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.schemes import USUAL, make_multipliers
@@ -229,7 +231,7 @@ class Trials:
         traction = master.into_frame(trial.snapshot.response.traction)
         if semismooth.tangential:
             traction = traction + step.supported
-        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.kept[:, :1])
+        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.left)
         self._linear = Linearised(linear, base, slip)
         return answer
 
@@ -240,8 +242,8 @@ class Trials:
             return
         now = self._frames(self.master.here(self.start, dt))
         before = self._frames(self.start)
-        traction = about.base.after(change, semismooth.share)
-        if semismooth.tangential and self.master.held is not None:
+        traction = about.base.after(change, semismooth.share, now.normal)
+        if semismooth.tangential and self._exact and self.master.held is not None:
             status = self._now.response.status
             self._slid = self._slid | (status == SLIP)
             traction = supported_share(
@@ -256,7 +258,7 @@ class Trials:
         self._let_go_of_immovable()
 
     def _let_go_of_immovable(self) -> None:
-        if self._multipliers is not None:
+        if self._multipliers is not None and self._exact:
             self._multipliers.let_go(self.start, self.immovable, self._slight)
 
     def add_multiplier_residual(self, out: Floats) -> None:
@@ -321,6 +323,11 @@ class Trials:
             self._semismooth.share = share
 
     @property
+    def _exact(self) -> bool:
+        """Whether multipliers, if there are any, stand for no compliance."""
+        return self._multipliers is None or self._multipliers.exact
+
+    @property
     def _semismooth(self) -> Semismooth | Layer | None:
         """What follows every step of Newton's method."""
         own = None if self._multipliers is None else self._multipliers.semismooth
@@ -355,8 +362,33 @@ class Trials:
         self._take(soft, stiff)
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
 
+    @property
+    def penalised(self) -> bool:
+        """Whether penalties alone hold where multipliers could follow: nodes have one each.
+
+        Integration points are too many for that.
+        """
+        alone = self._points.at_nodes and self._multipliers is None
+        return alone and augmentable(self.interface)
+
+    def comply(self, stiffness: float, size: float) -> None:
+        """Come to penalties by way of multipliers, see `Compliant`, until `take_away`.
+
+        Args:
+            stiffness: Of the bodies, stress/length.
+            size: Facet size, length.
+        """
+        penalties = self.interface.penalties()
+        self._multipliers = Compliant(Augmentation(), size, penalties, self._comm)
+        self._multipliers.suit(stiffness)
+        self.begin(self._state, self._accepted)
+
     def take_away(self) -> None:
-        """Take the layer away."""
+        """Take the layer away, or multipliers that are a way to penalties."""
+        if not self._exact:
+            self._multipliers = None
+            self._take(self.interface, self.interface)
+            self.begin(self._state, self._accepted)
         if self._layer is not None:
             self.start = self._layer.without(self.start)
             self._layer = None
@@ -387,6 +419,9 @@ class Trials:
     def _step(self, trial: Snapshot) -> ContactTrial:
         """A trial with the frames of the master."""
         own, answer, far = self._multipliers, trial.response, np.full(len(self.start), np.inf)
+        covered = self._points.covered(trial.areas).clip(LEAST, 1.0)
+        shared = self.shared.at(self._points.nodes[:, 0])
+        slight = self._slight & self._exact
         return ContactTrial(
             self.start,
             answer,
@@ -394,12 +429,12 @@ class Trials:
             self._frames(answer.state),
             self._frames(self.start),
             self.master.axes(answer),
-            self.immovable | self._slight,
-            self._slight,
-            self._points.covered(trial.areas).clip(LEAST, 1.0),
-            self.shared.at(self._points.nodes[:, 0]),
+            self.immovable & self._exact | slight,
+            slight,
+            covered,
+            np.stack([far, far], 1) if own is None else own.rigidity(shared, covered),
             np.linalg.norm(trial.points, axis=1),
-            self.master.held,
+            self.master.held if self._exact else None,
             far if own is None else own.closeness(self.start, answer.pressure, answer.gap),
         )
 

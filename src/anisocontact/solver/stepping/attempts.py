@@ -69,7 +69,7 @@ class _Way:
         flowing: Whether the bodies flow.
         multipliers: Way to the multipliers of augmented contacts.
         spare: Whether its failure says nothing of what holds the bodies.
-        layered: Whether stiff adhesion is come to over a compliant layer.
+        layered: Whether stiff laws are come to by way of what is easier, see `Continuation`.
     """
 
     start: Vec
@@ -88,7 +88,8 @@ class Attempts:
     The first attempt starts from the extrapolated state with a line search, the last one from the
     accepted state with full steps: a line search stops in front of a jump of the law. Both are one
     where nothing is extrapolated and pressures of cells follow corrections in full steps. Where
-    adhesion is stiff one with compliant layers comes between them, see `Continuation`. Where the
+    adhesion is stiff one with compliant layers comes between them, where penalties are one with
+    multipliers before them, see `Continuation`. Where the
     status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
     either and the part is small, the last one lets the bodies flow, see `Flow`. Where a part is
@@ -178,7 +179,8 @@ class Attempts:
             both = [searching, full] if stiff else self._apart(searching, full)
             ways = [both[0], *both] if trusts else both
         if self._continuation.stiff():
-            ways.insert(2 if trusts else 1, replace(full, layered=True))
+            easy = self._continuation.easy and not trusts
+            ways.insert(0 if easy else 2 if trusts else 1, replace(full, layered=True))
         return ways
 
     def _apart(self, searching: _Way, full: _Way) -> list[_Way]:

@@ -1,4 +1,7 @@
-"""Stiff adhesion: the increment is solved with a compliant layer behind it, which is taken away.
+"""Stiff laws: the increment is solved with what is easier, which is taken away.
+
+Stiff penalties are come to by way of multipliers, see `contact.compliant`, stiff adhesion by a
+compliant layer behind it.
 
 A point sticks only while it slips by less than `mu N / k`. Where the stiffness k of adhesion is
 far beyond that of the bodies, this is so little that a correction throws every point from one side
@@ -9,7 +12,7 @@ and what is left is an equilibrium of the user's law, which has to converge with
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from anisocontact.base.fenicsx import Vec
@@ -18,7 +21,7 @@ from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.problem import Problem
 
-#: Stiffness of adhesion over that of the bodies beyond which an attempt with a layer is made.
+#: Stiffness of penalties or adhesion over that of the bodies beyond which this is tried.
 STIFF = 100.0
 #: Stiffness of the first layer over that of the bodies, where the first try fails a second one, and
 #: how much stiffer the next one is.
@@ -29,30 +32,55 @@ FALLS, ROUNDS = 0.1, 4
 
 
 class Continuation:
-    """Solves with a layer behind stiff adhesion first, then with the laws as they are."""
+    """Solves with what is easier than stiff laws first, then with the laws as they are."""
 
     def __init__(self, problem: Problem, newton: IncrementSolver) -> None:
         self._problem = problem
         self._newton = newton
 
     def stiff(self) -> list[Contact]:
-        """Contacts whose adhesion is much stiffer than their bodies, the same on all ranks."""
-        return [c for c in self._problem.contacts if self.ratio(c) > STIFF]
+        """Contacts that are much stiffer than their bodies, the same on all ranks."""
+        return [*self._by_layers(), *self._by_multipliers()]
+
+    @property
+    def easy(self) -> bool:
+        """Whether it is quicker than the laws as they are: with multipliers, and no layers."""
+        return not (self._problem.contact_term.simultaneous or self._by_layers())
+
+    def _hardness(self, contact: Contact) -> float:
+        """Normal penalty of a contact over the stiffness of the bodies behind it."""
+        return float(contact.trials.interface.penalties()[0] / contact.body_stiffness)
+
+    def _by_multipliers(self) -> list[Contact]:
+        """Those whose penalties are."""
+        contacts = self._problem.contacts
+        return [c for c in contacts if c.trials.penalised and self._hardness(c) > STIFF]
+
+    def _by_layers(self) -> list[Contact]:
+        """Others whose adhesion is."""
+        others = set(self._problem.contacts) - set(self._by_multipliers())
+        return [c for c in self._problem.contacts if c in others and self.ratio(c) > STIFF]
 
     def ratio(self, contact: Contact) -> float:
         """Stiffness of a contact's adhesion over that of the bodies behind it."""
         return contact.slip_stiffness(self._problem.dt) / contact.body_stiffness
 
     def hint(self) -> str:
-        """What stiff adhesion there is, and what to do about it; empty where there is none."""
+        """What stiff laws there are, and what to do about them; empty where there is none."""
         dt = self._problem.dt
-        return "; ".join(
+        penalties = [
+            f"the penalty of {c.name} is {self._hardness(c):.0e} times as stiff as the bodies "
+            f"behind it: one below {STIFF * c.body_stiffness:.0e}, or 'augmented', is easier"
+            for c in self._by_multipliers()
+        ]
+        adhesion = [
             f"adhesion of {c.name} is {self.ratio(c):.0e} times as stiff as the bodies behind it "
             f"({c.slip_stiffness(dt):.2g} against {c.body_stiffness:.2g} stress/length, about "
             f"E/h): a stiffness below {STIFF * c.body_stiffness:.0e}, or smaller increments, "
             "are easier"
-            for c in self.stiff()
-        )
+            for c in self._by_layers()
+        ]
+        return "; ".join(penalties + adhesion)
 
     def solve(self, x: Vec) -> NewtonResult:
         """Correct `x` until it is in equilibrium, or no more can be done.
@@ -62,11 +90,12 @@ class Continuation:
         Args:
             x: Start, overwritten by the last iterate, length.
         """
-        start, result = x.copy(), self._with_layers(x, LAYERS[0], lambda: 1.0)
-        if result.reason:
+        layered, start = self._by_layers(), x.copy()
+        result = self._softened(x, layered, LAYERS[0], lambda: 1.0)
+        if result.reason and layered:
             self.end()
             start.copy(x)
-            again = self._with_layers(x, LAYERS[1], None)
+            again = self._softened(x, layered, LAYERS[1], None)
             result = replace(again, iterations=result.iterations + again.iterations)
         self.end()
         if result.reason:
@@ -75,18 +104,35 @@ class Continuation:
         return replace(final, iterations=result.iterations + final.iterations)
 
     def end(self) -> None:
-        """Take all layers away."""
+        """Take all layers away, and multipliers that are a way to penalties."""
         for contact in self._problem.contacts:
             contact.trials.take_away()
 
+    def _softened(
+        self,
+        x: Vec,
+        layered: Sequence[Contact],
+        stiffness: float,
+        damping: Callable[[], float] | None,
+    ) -> NewtonResult:
+        """Newton's method with multipliers for stiff penalties, and layers for some contacts."""
+        for contact in self._by_multipliers():
+            contact.trials.comply(contact.body_stiffness, contact.facet_size)
+        if not layered:
+            return self._newton.solve(x)
+        return self._with_layers(x, layered, stiffness, damping)
+
     def _with_layers(
-        self, x: Vec, stiffness: float, damping: Callable[[], float] | None
+        self,
+        x: Vec,
+        layered: Sequence[Contact],
+        stiffness: float,
+        damping: Callable[[], float] | None,
     ) -> NewtonResult:
         """Newton's method with one layer after the other, each stiffer than the last."""
-        stiff, spent = self.stiff(), 0
-        most = max(self.ratio(contact) for contact in stiff)
+        most, spent = max(self.ratio(contact) for contact in layered), 0
         while True:
-            for contact in stiff:
+            for contact in layered:
                 softer = 1.0 / (stiffness * contact.body_stiffness)
                 contact.trials.lay(softer, self._problem.dt)
             for _ in range(ROUNDS):

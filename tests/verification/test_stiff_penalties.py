@@ -1,0 +1,60 @@
+"""Penalties far beyond the stiffness of the bodies are as easy to solve with as multipliers."""
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+import numpy as np
+from tests.verification.slid_blocks import offset_pair
+
+from anisocontact import Adhesion, Friction, NormalLaw
+from anisocontact.base.statuses import OPEN, SLIP, STICK
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact
+from anisocontact.interface import ContactLaw
+from anisocontact.solver import Problem, Solver, Step
+
+HELD = dict.fromkeys("xyz", 0.0)
+#: Penalties over Young's modulus, length^-1: 1e5 times the stiffness of the bodies.
+STIFF = 1e6
+
+
+def run(unit, tangential, strategy):
+    """A block that is pressed and then dragged: iterations of the increments, and the contact.
+
+    Args:
+        unit: Young's modulus of the blocks, stress.
+        tangential: Stiffness of adhesion over it, length^-1.
+        strategy: How the equations are solved.
+    """
+    model = offset_pair("hexahedron", 1)
+    stick, slip = Adhesion(stiffness=unit * tangential), Friction(coefficients=(0.4, 0.4))
+    law = ContactLaw(NormalLaw(penalty=unit * STIFF), stick, slip)
+    contact = Contact(model, "upper.bottom", "lower.top", law, mortar=True)
+    steel = make_material("linear-elastic", E=unit, nu=0.3)
+    held, top = {"lower.bottom": HELD}, {"z": -0.01, "y": 0.0}
+    press = Step("press", 1, held | {"upper.top": top | {"x": 0.0}})
+    drag = Step("drag", 2, held | {"upper.top": top | {"x": 0.01}})
+    problem = Problem(model, dict.fromkeys(("upper", "lower"), steel), [contact])
+    found = Solver(problem, [press, drag], strategy=strategy).run()
+    return [one.iterations for one in found], contact
+
+
+@pytest.mark.parametrize(
+    ("unit", "tangential", "strategy"),
+    [(1.0, STIFF, "direct"), (1e9, STIFF, "condensed"), (1.0, 10.0, "direct")],
+)
+def test_a_few_iterations(unit, tangential, strategy):
+    """Requirement: stiff penalties take a few corrections, and hold as the law says.
+
+    Points stick and slip. Multipliers take as many corrections; without the way over them the first
+    increment is cut again and again. Reference: the pressure is the penalty times the overlap.
+    Tolerance: rounding of positions, 1e-16, is 1e-7 of overlaps of 1e-9.
+    """
+    iterations, contact = run(unit, tangential, strategy)
+    assert len(iterations) == 3
+    assert max(iterations) <= 6
+    touching = contact.last.status != OPEN
+    assert {STICK, SLIP} <= set(contact.last.status[touching])
+    expected = -unit * STIFF * contact.last.gap[touching]
+    np.testing.assert_allclose(contact.last.pressure[touching], expected, rtol=1e-6)
