@@ -45,8 +45,8 @@ from anisocontact.mesh import Model
 #: shape at most, where what is asked is how far a surface gives way: a half space of nu = 1/2 is
 #: 1.21 times as stiff as one of nu = 0.3, and nodes of it come to 1.3 times.
 MOST = 1.0
-#: From which on its pressures follow the corrections: nu = 0.496.
-FOLLOW = 50.0
+#: From which on its pressures follow the corrections: nu = 0.4995 in a block of cubes.
+FOLLOW = 250.0
 #: Residual of displacements alone over that of both in a mixed form, at most, where pressures count
 #: as of `CellPressures.force_sizes`.
 OF_BOTH = 2.0**0.5
