@@ -239,7 +239,8 @@ def test_advice_at_a_border_is_what_the_contact_can_have(meshed, nodes, advice):
     points = SimpleNamespace(at_nodes=nodes)
     contact = SimpleNamespace(name="sole", of_two_groups=meshed, slave_points=points)
     found = [Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=True)]
-    assert _reason("gone", found, [contact]).endswith(f"border of the master{advice}")
+    other = SimpleNamespace(name="lid", of_two_groups=False, slave_points=points)
+    assert _reason("gone", found, [contact, other]).endswith(f"border of the master{advice}")
 
 
 def sticky(interface, most=10.0, width=1e-5):

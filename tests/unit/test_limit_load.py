@@ -40,17 +40,33 @@ def test_a_force_and_a_moment_on_a_ring() -> None:
     assert found.motion[5] == pytest.approx(2.0, rel=1e-5)
 
 
-def test_a_force_beside_the_middle_is_held_less() -> None:
-    """Two points at a distance of 2, the force across their line through one of them.
+@pytest.mark.parametrize("beside", [0.5, 1.0])
+def test_a_force_beside_the_middle_is_held_less(beside: float) -> None:
+    """Two points at a distance of 2, the force across their line beside their middle.
 
-    Source: that point carries all of it, mu N / 2, the other one nothing.
+    Source: the nearer one carries `(1 + beside) / 2` of it, and at most mu N / 2.
     """
     arms = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
     normal = np.tile([0.0, 0.0, 1.0], (2, 1))
-    load = np.array([0.0, 1.0, -1.0, 0.0, 0.0, 1.0])
+    load = np.array([0.0, 1.0, -1.0, 0.0, 0.0, beside])
     found = limit(_points(arms, normal, np.array([0.5, 0.5])), EVERY, load)
     assert found is not None
-    assert found.held == pytest.approx(0.5 * MU, rel=1e-4)
+    assert found.held == pytest.approx(MU / (1.0 + beside), rel=1e-4)
+
+
+def test_what_the_normal_forces_carry_is_not_left_to_friction() -> None:
+    """Points on a slope of 0.1 that can move along x alone.
+
+    Source: balance along x, in which the normal forces carry 0.1 of the 0.5, and friction along the
+    slope at most mu times the cosine.
+    """
+    sine, cosine = 0.1, np.sqrt(0.99)
+    ring = _ring()
+    normal = np.tile([-sine, 0.0, cosine], (24, 1))
+    load = np.array([0.5, 0.0, -1.0, 0.0, 0.0, 0.0])
+    found = limit(_points(ring.arms, normal, ring.force), EVERY[:1], load)
+    assert found is not None
+    assert found.held == pytest.approx(MU * cosine / (0.5 - sine), rel=1e-6)
 
 
 def test_an_ellipse_holds_along_a_direction_what_its_radius_there_is() -> None:

@@ -16,10 +16,10 @@ from anisocontact.solver.stepping.report import Accepted
 WALL = {"low.left": {"x": 0.0, "y": 0.0}, "up.left": {"x": 0.0, "y": 0.0}}
 
 
-def _run(strategy: str, columns: int = 4) -> tuple[list[Accepted], Contact]:
+def _run(strategy: str, columns: int = 4, gap: float = 0.0) -> tuple[list[Accepted], Contact]:
     """Two beams clamped at one wall, pressed together and bent to and fro; corners at one place."""
     low = make_shape("rectangle", origin=(0, -1), size=(4, 1), cells=(4, 2))
-    up = make_shape("rectangle", origin=(0, 0), size=(4, 1), cells=(columns, 2))
+    up = make_shape("rectangle", origin=(0, gap), size=(4, 1), cells=(columns, 2))
     model = build_mesh([Body("low", low), Body("up", up)], idealisation=PlaneStrain())
     steel = make_material("linear-elastic", E=1e4, nu=0.0)
     contact = Contact(model, "up.bottom", "low.top", Friction(coefficients=0.2))
@@ -55,10 +55,13 @@ def test_it_is_told_how_many_points_have_no_pressure() -> None:
     assert line.startswith(f"step 'press', increment 1: contact {contact.name!r}: 1 slave point")
 
 
-def test_a_corner_against_nodes_that_move_has_its_multiplier() -> None:
+@pytest.mark.parametrize(("columns", "gap"), [(3, 0.0), (4, 1e-3)])
+def test_a_corner_that_moving_nodes_meet_or_none_has_its_pressure(columns: int, gap: float) -> None:
     """With 3 facets over 4 the corner is held against the next nodes of the master as well.
 
-    Requirement: nothing is said where a node of the master that moves says what the pressure is.
+    Requirement: nothing is said where a node of the master that moves says what the pressure is,
+    nor where the corner touches nothing, as in beams with a gap that they close farther out.
     """
-    states, _ = _run("direct", columns=3)
+    states, contact = _run("direct", columns, gap)
+    assert contact.resultant()[0][1] > 0.0
     assert [one.undetermined for one in states] == [{}] * len(states)

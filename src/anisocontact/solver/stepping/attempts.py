@@ -13,6 +13,7 @@ from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.culprits import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
+from anisocontact.solver.stepping.overload import Overload
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
@@ -25,6 +26,8 @@ from anisocontact.solver.system.problem import Problem
 LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
 GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
+#: Kinds that explain a failure by themselves.
+GRAVE = GRAVITY[:3]
 #: Kinds that shares of corrections do not help against.
 PLAIN = {"law", "inverted"}
 
@@ -120,7 +123,12 @@ class Attempts:
         self._continuation = Continuation(problem, newton)
 
     def solve(
-        self, first: Vec, last: Vec, ratio: float, pace: Pace, overloaded: bool = False
+        self,
+        first: Vec,
+        last: Vec,
+        ratio: float,
+        pace: Pace,
+        overloads: Sequence[Overload] = (),
     ) -> Outcome:
         """Solve and commit, or roll back.
 
@@ -130,13 +138,14 @@ class Attempts:
             ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
             pace: How large the part is: in a small one, that is not likely to get smaller, more is
                 tried, in a tiny one everything, whatever failed.
-            overloaded: Whether friction cannot hold the loads at the end of the part: everything is
-                tried, and what fails is final.
+            overloads: Loads that friction does not hold at the end of the part: everything is
+                tried, and what fails is final where nothing else can come to hold the bodies.
 
         Returns:
             Whether one converged, and what kept the others from it.
         """
         spent, self._failed, failed = 0, None, ""
+        overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
         found: list[Culprit] = []
         seen: set[str] = set()
         searching, full = _Way(first, ratio, full_steps=False), _Way(last)
@@ -167,7 +176,7 @@ class Attempts:
         reason = _reason(failed, found, self._problem.contacts)
         result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()
-        return Outcome(result, tuple(found), self._final or overloaded, hint, self._failed)
+        return Outcome(result, tuple(found), self._final or hopeless, hint, self._failed)
 
     def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts

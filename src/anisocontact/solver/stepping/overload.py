@@ -8,10 +8,11 @@ meets first.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
@@ -67,53 +68,95 @@ class _Driven:
     rigid: bool = False
 
 
+@dataclass(frozen=True)
+class Overload:
+    """Loads that friction does not hold.
+
+    Attributes:
+        text: Which, in a line.
+        told: Whether there is evidence enough to say so.
+        certain: Whether nothing that presses the body otherwise by then can make it hold: a contact
+            that is open yet, or prescribed motion.
+    """
+
+    text: str
+    told: bool
+    certain: bool
+
+
 def too_much_load(
-    problem: Problem, fraction: float, over: float = TOO_MUCH, by: Contact | None = None
-) -> str:
-    """Which loads on bodies friction cannot hold; empty if there are none, on all ranks.
+    problem: Problem,
+    fraction: float,
+    now: float,
+    over: float = TOO_MUCH,
+    by: Contact | None = None,
+) -> list[Overload]:
+    """Loads on bodies that friction cannot hold, on all ranks.
 
     Args:
         problem: The problem, in the last accepted state.
         fraction: Fraction of the step whose loads are looked at.
+        now: Fraction of the step of the accepted state.
         over: Load over the limit of friction that is too much.
         by: Contact that has to be the only one that holds the body; any if left out.
     """
-    bodies = _driven(problem, fraction)
+    bodies = _driven(problem, fraction, now)
     if by is not None:
         bodies = [one for one in bodies if all(c is by for c, _ in one.contacts)]
-    return "; ".join(told for told in (_told(problem, one, over) for one in bodies) if told)
+    return [one for one in _found(problem, bodies, over) if one.told]
 
 
-def exhausted(problem: Problem) -> str:
+def exhausted(problem: Problem, now: float) -> list[Overload]:
     """As of `too_much_load` at the end of the step, of bodies that friction hardly holds now."""
-    told = (_told(problem, one, TOO_MUCH, soon=True) for one in _driven(problem, 1.0))
-    return "; ".join(text for text in told if text)
+    return _found(problem, _driven(problem, 1.0, now), soon=True)
 
 
-def past_holding(problem: Problem, fraction: float, cuts: int) -> bool:
-    """Whether a part is to be the last one since friction cannot hold a deformable body.
+def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:
+    """Loads on deformable bodies that are the reason to try everything in a part.
 
     Rigid surfaces are left out: parts in which nothing holds these end soon.
 
     Args:
         problem: The problem, in the last accepted state.
         fraction: Fraction of the step at which the part ends.
+        now: Fraction of the step of the accepted state.
         cuts: Cuts of this increment so far.
     """
     if not cuts:
-        return False
-    told = [_told(problem, one, TOO_MUCH) for one in _deformable(problem, fraction)]
+        return []
+    found = _found(problem, _deformable(problem, fraction, now))
     if cuts > MANY:
-        told += [_told(problem, one, TOO_MUCH, soon=True) for one in _deformable(problem, 1.0)]
-    return any(told)
+        found += _found(problem, _deformable(problem, 1.0, now), soon=True)
+    return found
 
 
-def _driven(problem: Problem, fraction: float) -> list[_Driven]:
-    return [*_deformable(problem, fraction), *_rigid(problem, fraction)]
+def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:
+    """What is told of a step that stops: loads alone where nothing else can be the reason.
+
+    Args:
+        attempt: Why the last attempt failed.
+        grave: Whether that needs no overload to happen, such as cells that are inside out.
+        found: Loads that friction does not hold.
+    """
+    texts = [one.text for one in found]
+    if any(one.certain for one in found):
+        return "; ".join([*texts, attempt] if grave else texts)
+    return "; ".join([attempt, *texts])
 
 
-def _told(problem: Problem, body: _Driven, over: float, soon: bool = False) -> str:
-    """Why friction does not hold a body, in a line; empty where it may.
+def _driven(problem: Problem, fraction: float, now: float) -> list[_Driven]:
+    return [*_deformable(problem, fraction, now), *_rigid(problem, fraction, now)]
+
+
+def _found(
+    problem: Problem, bodies: Iterable[_Driven], over: float = TOO_MUCH, soon: bool = False
+) -> list[Overload]:
+    found = (_overload(problem, one, over, soon) for one in bodies)
+    return [one for one in found if one is not None]
+
+
+def _overload(problem: Problem, body: _Driven, over: float, soon: bool) -> Overload | None:
+    """Whether friction does not hold a body; None where it may.
 
     Args:
         problem: The problem.
@@ -121,34 +164,53 @@ def _told(problem: Problem, body: _Driven, over: float, soon: bool = False) -> s
         over: Load over the limit of friction that is too much.
         soon: Whether the loads are those of later increments.
     """
-    points, touched = _pressed(problem, body)
+    points, touched, opened = _pressed(problem, body)
     by_load = None if points is None else _pressed_by_load(body, points)
     if points is None or not (touched or by_load):
-        return ""
-    found = limit(by_load or points, body.motions, body.load)
+        return None
+    then = by_load or _pressed_on(body, points)
+    found = limit(then, body.motions, body.load)
     if found is None or not found.held * over < 1.0:
-        return ""
+        return None
     rubs = found.held > NOTHING
     if body.rigid and not rubs:  # which of its components are free is told elsewhere
-        return ""
-    if soon or by_load is None:
-        now = limit(points, body.motions, body.before) if touched else None
-        if now is None or not now.held * NEARLY < 1.0:
-            return ""
+        return None
+    now = limit(points, body.motions, body.before) if touched else None
+    near = now is not None and now.held * NEARLY < 1.0
+    if (soon or by_load is None) and not near:
+        return None
+    # the load says how much presses a body, and not where: enough for translations
+    shifted = None if soon or by_load is None else limit(by_load, _shifts(body), body.load)
+    exact = shifted is not None and shifted.held * over < 1.0
+    certain = not opened and (exact or (near and not _moves(problem)))
     when = " at the end of the step" if soon else ""
+    least = "" if certain else ", with what presses on it now"
     slips = _slipping(body) if touched else ""
     cure = CURE if rubs else WITHOUT
-    return f"{_line(body, by_load or points, found, when)}: {cure}{slips}"
+    text = f"{_line(body, then, found, when)}{least}: {cure}{slips}"
+    return Overload(text, near or certain, certain)
 
 
-def _deformable(problem: Problem, fraction: float) -> Iterator[_Driven]:
+def _moves(problem: Problem) -> bool:
+    """Whether motion is prescribed along the step, which may press bodies on; collective."""
+    supports = problem.comm.allreduce(int(not problem.supports.rest))
+    return bool(supports > 0 or not problem.rigid.rest)
+
+
+def _shifts(body: _Driven) -> Floats:
+    """Those of its motions that are translations, orthonormal, (j, 6)."""
+    mixed = scipy.linalg.null_space(body.motions[:, 3:].T)
+    return np.asarray(mixed.T @ body.motions)
+
+
+def _deformable(problem: Problem, fraction: float, now: float) -> Iterator[_Driven]:
     """Deformable bodies that only contact holds, with those that lead their faces."""
     x, u = problem.model.space.tabulate_dof_coordinates(), problem.u.x.array.reshape(-1, 3)
     for free in problem.stabilisation.loose:
         body = free.body
         arms = (x + u)[body.nodes] - body.centre
         loads = []
-        for at in (fraction, problem.load_factor):
+        for at in (fraction, now):
             problem.loads.set_load_factor(at, problem.dt)
             force = problem.layout.assembled(problem.loads.force(u)).reshape(-1, 3)[body.nodes]
             moment = np.cross(arms, force).sum(axis=0)
@@ -181,7 +243,7 @@ def _leads(problem: Problem, body: ConnectedBody, fraction: float) -> Floats:
     return total
 
 
-def _rigid(problem: Problem, fraction: float) -> Iterator[_Driven]:
+def _rigid(problem: Problem, fraction: float, now: float) -> Iterator[_Driven]:
     """Rigid surfaces that loads drive."""
     for body in problem.rigid.free:
         free = ~problem.rigid.holds(body)
@@ -190,7 +252,7 @@ def _rigid(problem: Problem, fraction: float) -> Iterator[_Driven]:
             continue
         size = problem.rigid.length_of_turns(body)
         scale = np.repeat([1.0, 1.0 / size], 3)
-        loads = [problem.rigid.load(body, at) * scale for at in (fraction, problem.load_factor)]
+        loads = [problem.rigid.load(body, at) * scale for at in (fraction, now)]
         yield _Driven(
             f"rigid body {body.name!r}",
             [(contact, -1.0) for contact in contacts],
@@ -203,18 +265,18 @@ def _rigid(problem: Problem, fraction: float) -> Iterator[_Driven]:
         )
 
 
-def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, bool]:
+def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, bool, bool]:
     """Where contact presses on a body, on all ranks; where it touches before anything presses.
 
     Returns:
         The points, with their areas for forces before anything presses; None where the law is one
-        in Python. Whether something presses.
+        in Python. Whether something presses. Whether some of its contacts do not.
     """
     found = []
     for contact, side in body.contacts:
         friction = contact.interface.tangential.friction
         if friction is None:
-            return None, False
+            return None, False, False
         last, areas = contact.last, contact.areas
         touching = contact.located() & (last.gap <= TOUCHING * contact.facet_size)
         rows = [
@@ -227,15 +289,18 @@ def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, boo
         every = problem.comm.allgather(rows)
         found.append([np.concatenate(column) for column in zip(*every, strict=True)])
     if not found:
-        return None, False
+        return None, False, False
     columns = zip(*found, strict=True)
     arms, normal, force, area, rubs = (np.concatenate(column) for column in columns)
     touched = bool(force.any())
     weight = force if touched else area
     closed = weight > 0.0
     if not closed.any():
-        return None, False
-    return PressedPoints(arms[closed], normal[closed], weight[closed], rubs[closed]), touched
+        return None, False, False
+    which = 2 if touched else 3
+    opened = not all(part[which].any() for part in found)
+    kept = PressedPoints(arms[closed], normal[closed], weight[closed], rubs[closed])
+    return kept, touched, opened
 
 
 def _pressed_by_load(body: _Driven, points: PressedPoints) -> PressedPoints | None:
@@ -248,6 +313,17 @@ def _pressed_by_load(body: _Driven, points: PressedPoints) -> PressedPoints | No
     if not (pushed > FLAT * sizes and free > FREE and pressed > 0.0):
         return None
     return replace(points, force=points.force * (pressed / sizes))
+
+
+def _pressed_on(body: _Driven, points: PressedPoints) -> PressedPoints:
+    """The points with larger forces where the loads come to press more along these, all in all.
+
+    That they press less is not taken for granted where normals differ: what is held at most is.
+    """
+    total = points.force @ points.normal
+    before, then = float(body.before[:3] @ total), float(body.load[:3] @ total)
+    grown = then / before if before < 0.0 and then < before else 1.0
+    return replace(points, force=points.force * grown)
 
 
 def _resistance(friction: Friction, axes: Floats, normal: Floats) -> Floats:

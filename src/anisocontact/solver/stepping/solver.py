@@ -15,12 +15,18 @@ from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
-from anisocontact.solver.stepping.attempts import Attempts, Outcome
+from anisocontact.solver.stepping.attempts import GRAVE, Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
-from anisocontact.solver.stepping.overload import exhausted, past_holding, too_much_load
+from anisocontact.solver.stepping.overload import (
+    Overload,
+    exhausted,
+    past_holding,
+    reason_of,
+    too_much_load,
+)
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
@@ -260,7 +266,8 @@ class Solver:
             pace.goal = events.goal(pace.done)
             events.begin(pace.part, pace.end)
             slides, end = events.slides(), _whole(pace.increment, pace.end) / step.increments
-            if slides is not None and too_much_load(self.problem, end, 1.0, slides):
+            now = self._reached(step)
+            if slides is not None and too_much_load(self.problem, end, now, 1.0, slides):
                 events.overload()
                 continue
             outcome = self._part(attempts, step, last)
@@ -297,9 +304,10 @@ class Solver:
         self._turns.permitted = pace.cuttable
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
-        overloaded = past_holding(self.problem, whole / step.increments, pace.cuts)
+        end, now = whole / step.increments, self._reached(step)
+        overloads = past_holding(self.problem, end, now, pace.cuts)
         with self._options:
-            return attempts.solve(first, last, ratio, pace, overloaded)
+            return attempts.solve(first, last, ratio, pace, overloads)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""
@@ -328,26 +336,28 @@ class Solver:
     def _hint(self, step: Step, cuts: int) -> str:
         """What is told with a cut: which bodies a step leaves free, then what friction holds."""
         if cuts:
-            return self._overload(step)
+            return "; ".join(one.text for one in self._overloads(step))
         begins = self.place.before is None
         return "; ".join(self.problem.stabilisation.notes) if begins else ""
 
-    def _overload(self, step: Step) -> str:
+    def _overloads(self, step: Step) -> list[Overload]:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
-        increment = self.place.pace.increment
-        return too_much_load(self.problem, increment / step.increments) or exhausted(self.problem)
+        end, now = self.place.pace.increment / step.increments, self._reached(step)
+        found = too_much_load(self.problem, end, now)
+        return found or exhausted(self.problem, now)
 
     def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
         """Say why an increment has no solution."""
         outcome = self.place.lost or outcome
         increment, culprits = self.place.pace.increment, outcome.culprits
-        reason = self._overload(step)
-        if reason:
+        found = self._overloads(step)
+        grave = any(culprit.kind in GRAVE for culprit in culprits)
+        reason = reason_of(outcome.result.reason, grave, found)
+        if outcome.result.reason not in reason:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])
         text = f"{tried} of the increment" if tried else ""
         text = "; ".join(part for part in (text, outcome.hint) if part)
-        reason = reason or outcome.result.reason
         stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
         stop.failed = outcome.failed
         raise stop
@@ -361,6 +371,10 @@ class Solver:
             step = self.steps[self.place.step].name
             increment = self.place.pace.increment
             self._on_iteration(Progress(step, increment, iteration, residual, counts))
+
+    def _reached(self, step: Step) -> float:
+        """Fraction of the step of the accepted state."""
+        return _whole(self.place.pace.increment, self.place.pace.done) / step.increments
 
     def _time(self, step: Step, increment: int, done: float) -> float:
         return self.place.time + _whole(increment, done) * (step.duration / step.increments)
