@@ -19,8 +19,8 @@ from typing import ClassVar, override
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
-from anisocontact.contact.multipliers import ContactTrial
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import State
 
@@ -57,7 +57,8 @@ class Compliant(Semismooth):
         state, slip = super().stiff(step)
         force = step.before.turned_to(step.now, self._remembered(step.before))
         held = step.remembers & (step.answer.pressure > 0.0)[:, None]
-        way = step.now.chord(-force / self.penalties[1], step.answer.state["spin"])
+        elastic = step.flexed(force) / self.penalties[1]
+        way = step.now.chord(-elastic, step.answer.state["spin"])
         return state, slip + np.where(held, way, 0.0)
 
     @override

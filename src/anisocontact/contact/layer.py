@@ -22,8 +22,9 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.statuses import OPEN
+from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
-from anisocontact.contact.multipliers import RATIO, ContactTrial
+from anisocontact.contact.multipliers import RATIO
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import Response, State
 from anisocontact.interface.series import SeriesHistory

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from anisocontact import _core
-from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.statuses import SLIP
-from anisocontact.contact.contact_planes import ContactPlanes, Opposite
+from anisocontact.base.array_types import Flags, Floats, Locals
+from anisocontact.base.statuses import OPEN, SLIP
+from anisocontact.contact.contact_planes import ContactPlanes, Opposite, along
+from anisocontact.contact.facet_answer import response_of
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.mortar_weights import MortarWeights
@@ -141,6 +143,33 @@ class MortarAnswer:
     by_nodes: Floats
     answered: Floats
     by_held: Floats
+
+    @classmethod
+    def of(
+        cls, at: MortarState, found: Mapping[str, Any], failed: Flags, tangent: bool
+    ) -> MortarAnswer:
+        """What the core has found at slave nodes.
+
+        Args:
+            at: The nodes where they are.
+            found: By the names of the core.
+            failed: Nodes whose projection failed, (n,).
+            tangent: Whether the derivative is asked for.
+        """
+        # supports carry what there is along directions that they hold
+        held = at.planes.held
+        traction = found["traction"] - along(held, found["traction"])
+        response = response_of({**found, "traction": traction}, failed)
+        which = np.flatnonzero(response.status != OPEN).astype(np.int32)
+        snapshot = Snapshot(at.planes.slave, at.weights.area, response)
+        by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
+        if tangent:
+            by_nodes = found["slopes"][which]
+            sliding = response.status[which] == SLIP
+            by_held[sliding] = found["by_held"][which[sliding]]
+        stiffness = found["stiffness"] * at.weights.area
+        free = by_nodes - held[which] @ by_nodes if held[which].any() else by_nodes
+        return cls(at, snapshot, stiffness, which, free, by_nodes, by_held)
 
     @cached_property
     def _tangent(self) -> tuple[Floats, Locals, Locals, Floats]:

@@ -10,17 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Locals
-from anisocontact.base.statuses import SLIP
 from anisocontact.contact.along_normals import OPPOSED
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
     across,
-    along,
     averaged_normal,
     held_directions,
 )
-from anisocontact.contact.facet_answer import found_on_all, response_of
+from anisocontact.contact.facet_answer import found_on_all
 from anisocontact.contact.facing import facing, largest_radius
 from anisocontact.contact.fold import Fold
 from anisocontact.contact.history import Snapshot
@@ -217,24 +215,10 @@ class MortarMaster(MeshedMaster):
         return self._answer(self._derivative if derivative else self._law, state, dt, tangent)
 
     def _answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> MortarAnswer:
-        at = self._at
         batch = self._batch(state, tangent)
         found = found_on_all(self._comm, law, state, dt, batch, "tractions")
         failed = self._hint.status == FACET_STATUS.index("failed")
-        # supports carry what there is along directions that they hold
-        held = at.planes.held
-        traction = found["traction"] - along(held, found["traction"])
-        response = response_of(found | {"traction": traction}, failed)
-        which = np.flatnonzero(response.status != 0).astype(np.int32)
-        snapshot = Snapshot(at.planes.slave, at.weights.area, response)
-        by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
-        if tangent:
-            by_nodes = found["slopes"][which]
-            sliding = response.status[which] == SLIP
-            by_held[sliding] = found["by_held"][which[sliding]]
-        stiffness = found["stiffness"] * at.weights.area
-        free = by_nodes - held[which] @ by_nodes if held[which].any() else by_nodes
-        return MortarAnswer(at, snapshot, stiffness, which, free, by_nodes, by_held)
+        return MortarAnswer.of(self._at, found, failed, tangent)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""

@@ -10,7 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 from anisocontact.base.array_types import Flags
-from anisocontact.contact.multipliers import ContactTrial, Multipliers
+from anisocontact.contact.contact_trial import ContactTrial
+from anisocontact.contact.multipliers import Multipliers
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.uzawa import Uzawa

@@ -102,7 +102,7 @@ class Pass:
         self._augmentation = augmentation
         self._fixed: Flags | None = None
         if augmentation is not None:
-            self.trials.augment(augmentation, points.size)
+            self.trials.multipliers.augment(augmentation, points.size)
         self._begin()
 
     @property
@@ -153,7 +153,7 @@ class Pass:
         """
         self.body_stiffness = self.master.stiffness(diagonal)
         self.master_yields = self.master.yields(diagonal)
-        self.trials.suit(self.body_stiffness)
+        self.trials.multipliers.suit(self.body_stiffness)
         self._begin()
 
     def given_stiffnesses(self) -> dict[str, float]:
@@ -268,7 +268,7 @@ class Pass:
             if not self.trials.does_work:
                 self.state["energy_adhesion"] = 0.0
             self._trial = None
-        self.trials.end(accepted=True)
+        self.trials.multipliers.end(accepted=True)
         self._begin()
 
     def roll_back(self) -> None:
@@ -277,7 +277,7 @@ class Pass:
         self._trial = None
         answer: Any = self.answer
         self.answer = replace(answer, snapshot=self.accepted)
-        self.trials.end(accepted=False)
+        self.trials.multipliers.end(accepted=False)
         self._begin()
 
     def _begin(self) -> None:
@@ -362,7 +362,7 @@ class Pass:
             "areas": now.areas,
             "gained": self._gained,
             "dissipated": self._dissipated,
-            "level": np.full(len(now.areas), self.trials.level),
+            "level": np.full(len(now.areas), self.trials.multipliers.level),
         }
         kept = {name: values.copy() for name, values in (own | fields).items()}
         return self.master.persistent(kept)
@@ -384,5 +384,7 @@ class Pass:
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._gained, self._trial = np.array(kept["gained"]), None
         self._dissipated = np.array(kept["dissipated"])
-        self.trials.level = max(self._comm.allgather(float(kept["level"].max(initial=0.0))))
+        self.trials.multipliers.level = max(
+            self._comm.allgather(float(kept["level"].max(initial=0.0)))
+        )
         self._begin()

@@ -14,24 +14,21 @@ What the derivative is multiplied with enters no state that is evaluated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.statuses import OPEN, STICK
+from anisocontact.contact.contact_trial import ContactTrial, left_by
 from anisocontact.contact.frames import Frames
-from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
     EXACT,
     LEAST_RATIO,
     RATIO,
     ROUNDED,
     SHARE,
-    ContactTrial,
     Multipliers,
-    left_by,
 )
 from anisocontact.interface import State
 
@@ -39,54 +36,6 @@ from anisocontact.interface import State
 LEAST_PART = 1e-9
 #: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends.
 OVERSHOOT = 4.0
-
-
-@dataclass(frozen=True)
-class Base:
-    """The trial about which a Newton step is linear.
-
-    Attributes:
-        multiplier: lambda as a vector, (n, 3), stress.
-        traction: P, (n, 3), stress.
-        residual: Change of P that takes the violation away, (n, 3), stress.
-        kept: What lambda is of P where no gap closes, along the normal and the surface, (n, 2).
-    """
-
-    multiplier: Floats
-    traction: Floats
-    residual: Floats
-    kept: Floats
-
-    def after(self, change: Floats, share: float, normal: Floats) -> Floats:
-        """Multiplier after a step.
-
-        Args:
-            change: Change of the traction with the displacement of the step, (n, 3), stress.
-            share: Share of the step that was taken.
-            normal: At the points, (n, 3).
-
-        Returns:
-            lambda as a vector, (n, 3), stress.
-        """
-        rest = (1.0 - share) * self.multiplier
-        new = share * (self.traction + self.residual) + change
-        pressure = np.einsum("nd,nd->n", new, normal)[:, None] * normal
-        return np.asarray(rest + self.kept[:, 1:] * (new - pressure) + self.kept[:, :1] * pressure)
-
-
-@dataclass(frozen=True)
-class Linearised:
-    """The trial that the next Newton step is linear about.
-
-    Attributes:
-        linear: How tractions change with the nodes.
-        base: Tractions there, and what the multipliers have yet to take.
-        slip: Slip by which the multipliers violate friction, see `Semismooth.stiff`.
-    """
-
-    linear: Linear
-    base: Base
-    slip: Floats
 
 
 class Semismooth(Multipliers):
@@ -200,11 +149,14 @@ class Semismooth(Multipliers):
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
             stiffness = self.factors[1] * self._penalties[1] * (1.0 + step.start["stiffer"][:, 1:])
-            held = step.before.turned_to(step.now, given[:, 1:] - found[:, 1:]) / stiffness
-            more = left[:, 1:] * np.where(closing[:, None], held, more)
+            held = step.flexed(step.before.turned_to(step.now, given[:, 1:] - found[:, 1:]))
+            held /= stiffness
+            # slip that stays is felt to its square: what stands for force is told by force
+            by_force = closing | np.isfinite(step.rigidity[:, 1])
+            more = left[:, 1:] * np.where(by_force[:, None], held, more)
             compliant = 1.0 - step.kept[:, 1:]
             compliant[overshot, 0] = 1.0 / ratio[overshot, 1]
-            more += compliant * step.now.vector(trial["stored"]) / stiffness
+            more += compliant * step.flexed(step.now.vector(trial["stored"])) / stiffness
             # the way of a gap, which friction is divided by, does not grow with what is no motion
             way = self.way(step.start, step.answer.gap)[weak] * part[weak]
             more[weak] -= (deep[weak] / way)[:, None] * held[weak]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Codes, Flags, Floats
+from anisocontact.base.statuses import SLIP, STICK
 
 
 def supported_share(
@@ -41,3 +42,20 @@ def supported_share(
     size = np.linalg.norm(along, axis=1)
     less = along * np.divide(most, size, out=np.ones_like(size), where=size > most)[:, None]
     return np.asarray(traction - along + np.where(kept[:, None], before, less))
+
+
+class Supports:
+    """What supports take of the tractions of an increment.
+
+    Args:
+        count: How many points there are.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._slid: Flags = np.zeros(count, dtype=bool)
+
+    def bounded(self, traction: Floats, held: Floats, *, status: Codes, **others: Floats) -> Floats:
+        """As of `supported_share`, by the status of the points in the trial before, (n,)."""
+        self._slid = self._slid | (status == SLIP)
+        kept = (status == STICK) & ~self._slid
+        return supported_share(traction, held, kept=kept, **others)

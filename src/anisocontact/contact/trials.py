@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.statuses import SLIP, STICK
-from anisocontact.contact.compliant import Compliant
+from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
+from anisocontact.contact.linearised import Linearised
 from anisocontact.contact.master import Answer, Master
 from anisocontact.contact.multipliers import (
     RATIO,
     AugmentedLaw,
-    ContactTrial,
     Multipliers,
-    augmentable,
 )
 from anisocontact.contact.points import SlavePoints
-from anisocontact.contact.schemes import USUAL, make_multipliers
-from anisocontact.contact.semismooth import Base, Linearised, Semismooth
+from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
-from anisocontact.contact.supported_share import supported_share
+from anisocontact.contact.supported_share import Supports
+from anisocontact.contact.ways import Ways
 from anisocontact.interface import State
-from anisocontact.interface.augmentation import Augmentation
 
 #: What a trial starts from, and what the next Newton step is linear about.
 type Mark = tuple[State, Linearised | None]
@@ -52,6 +48,7 @@ class Trials:
         interface: Laws, as the user gave them.
         start: State from which trials start.
         immovable: Points that supports hold along the normal, left to their penalty, (n,).
+        multipliers: Those of the laws, and the ways to them.
         shared: Nodes that other contacts with multipliers have too.
     """
 
@@ -62,53 +59,25 @@ class Trials:
         self.master, self.interface, self.start, self._comm = master, law, state, comm
         self._laws: AugmentedLaw = law
         self._stiff_laws: AugmentedLaw = law
-        self._ways: Mapping[str, Multipliers] = {}
-        self._multipliers: Multipliers | None = None
+        self.multipliers = Ways(law, comm)
         self._layer: Layer | None = None
-        self.immovable = self._slight = self._slid = np.zeros(len(state), dtype=bool)
+        self.immovable = self._slight = np.zeros(len(state), dtype=bool)
+        self._supports = Supports(len(state))
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
         self._state: State
         self._accepted: Snapshot
         self._now: Snapshot
 
-    def augment(self, augmentation: Augmentation, size: float) -> None:
-        """Let multipliers make the laws exact.
-
-        Args:
-            augmentation: How exactly the contact is to hold.
-            size: Facet size, length.
-
-        Raises:
-            InputError: As of `make_multipliers`.
-        """
-        self._ways = make_multipliers(augmentation, self.interface, size, self._comm)
-        self._multipliers = self._ways[USUAL]
-
-    def suit(self, stiffness: float) -> None:
-        """Bring penalties to the stiffness of the bodies, stress/length."""
-        for way in self._ways.values():
-            way.suit(stiffness)
-
-    @property
-    def level(self) -> float:
-        """What the penalties of multipliers are multiplied with."""
-        return 1.0 if self._multipliers is None else self._multipliers.level
-
-    @level.setter
-    def level(self, level: float) -> None:
-        if self._multipliers is not None:
-            self._multipliers.level = level
-
     @property
     def augmented(self) -> bool:
         """Whether there are multipliers."""
-        return self._multipliers is not None
+        return self._own is not None
 
     @property
     def does_work(self) -> bool:
         """Whether tangential forces do work on elastic slip: those that are multipliers do none."""
-        return self._multipliers is None or not self._multipliers.tangential
+        return self._own is None or not self._own.tangential
 
     def begin(self, state: State, accepted: Snapshot) -> None:
         """Let trials start from the committed state.
@@ -121,11 +90,11 @@ class Trials:
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
-        self._slid = np.zeros(len(state), dtype=bool)
+        self._supports = Supports(len(state))
         self._slight = self._points.covered(accepted.areas) < SLIGHT
-        if self._multipliers is not None:
-            start = self._multipliers.begin(state, self.master.located(state))
-            self._start_from(self._multipliers.coming_to(self.master.body, start))
+        if self._own is not None:
+            start = self._own.begin(state, self.master.located(state))
+            self._start_from(self._own.coming_to(self.master.body, start))
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
 
@@ -135,17 +104,11 @@ class Trials:
         Args:
             change: Change that is to be expected, (n, 3), stress.
         """
-        if self._multipliers is None:
+        if self._own is None:
             return
         self.begin(self._state, self._accepted)
         change, frames = self.master.into_frame(change), self._frames(self.start)
-        self._start_from(self._multipliers.extrapolated(self.start, change, frames))
-
-    def end(self, accepted: bool) -> None:
-        """Take it that an increment is accepted or given up: the next one is found as usual."""
-        if accepted and self._multipliers is not None:
-            self._multipliers.commit()
-        self._multipliers = self._ways.get(USUAL)
+        self._start_from(self._own.extrapolated(self.start, change, frames))
 
     def forget(self) -> None:
         """Forget about which trial a Newton step was linear."""
@@ -172,10 +135,10 @@ class Trials:
         Raises:
             NotHeldError: They do not converge.
         """
-        if self._multipliers is None:
+        if self._own is None:
             return self.master.let_go()
         step = self._step(self._now)
-        better = self._multipliers.improve(step)
+        better = self._own.improve(step)
         if better is None and (better := self._held_as_well(step)) is None:
             return False
         self._start_from(better)
@@ -183,8 +146,8 @@ class Trials:
 
     def _held_as_well(self, step: ContactTrial) -> State | None:
         """Start with multipliers of points that penalties leave too deep; None if none does."""
-        assert self._multipliers is not None
-        deep = self._slight & self._multipliers.beyond(step)
+        assert self._own is not None
+        deep = self._slight & self._own.beyond(step)
         if not self._comm.allreduce(int(deep.any())):
             return None
         self._slight = self._slight & ~deep
@@ -194,9 +157,9 @@ class Trials:
 
     def settle(self) -> None:
         """Let points that came to lie in the trial, which is in equilibrium, carry friction."""
-        if self._multipliers is None or self._layer is not None:
+        if self._own is None or self._layer is not None:
             return
-        if (settled := self._multipliers.settled(self._step(self._now))) is not None:
+        if (settled := self._own.settled(self._step(self._now))) is not None:
             self._start_from(settled)
 
     def soften(self) -> bool:
@@ -207,7 +170,7 @@ class Trials:
         """
         if self.master.hold_again():
             return True
-        start = None if self._multipliers is None else self._multipliers.soften(self.start)
+        start = None if self._own is None else self._own.soften(self.start)
         if start is None:
             return False
         self._start_from(start)
@@ -220,19 +183,8 @@ class Trials:
         trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
-        state, slip = semismooth.stiff(step)
-        stiff = master.answer(state, dt, derivative=True, separate=True)
-        stiffness = stiff.stiffness / semismooth.ratio
-        if not semismooth.tangential:
-            physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
-            stiffness += physical * (trial.snapshot.response.status == STICK)
-        answer: Answer = trial.by_derivative(stiff, stiffness)
-        linear = master.linear(answer)
-        traction = master.into_frame(trial.snapshot.response.traction)
-        if semismooth.tangential:
-            traction = traction + step.supported
-        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.left)
-        self._linear = Linearised(linear, base, slip)
+        physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
+        answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical)
         return answer
 
     def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
@@ -243,23 +195,21 @@ class Trials:
         now = self._frames(self.master.here(self.start, dt))
         before = self._frames(self.start)
         traction = about.base.after(change, semismooth.share, now.normal)
-        if semismooth.tangential and self._exact and self.master.held is not None:
-            status = self._now.response.status
-            self._slid = self._slid | (status == SLIP)
-            traction = supported_share(
+        if semismooth.tangential and self.multipliers.exact and self.master.held is not None:
+            traction = self._supports.bounded(
                 traction,
                 self.master.held,
                 last=before.turned_to(now, before.vector(self._state["stored"])),
                 carried=about.base.traction,
                 normal=now.normal,
-                kept=(status == STICK) & ~self._slid,
+                status=self._now.response.status,
             )
         self.start = semismooth.advance(self.start, traction, now, before)
         self._let_go_of_immovable()
 
     def _let_go_of_immovable(self) -> None:
-        if self._multipliers is not None and self._exact:
-            self._multipliers.let_go(self.start, self.immovable, self._slight)
+        if self._own is not None and self.multipliers.exact:
+            self._own.let_go(self.start, self.immovable, self._slight)
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -279,19 +229,14 @@ class Trials:
             return np.zeros(6)
         return self._now.wrench(about, self.master.out_of_frame(self._linear.base.residual))
 
-    @property
-    def ways(self) -> tuple[str, ...]:
-        """Ways to the multipliers in an increment, see `schemes`; none without augmentation."""
-        return tuple(self._ways)
-
     def take_way(self, name: str) -> None:
         """Find the multipliers in another way until the trial is kept or forgotten.
 
         Args:
             name: One of the names in `schemes`; a contact that does not have it goes on as usual.
         """
-        if name in self._ways:
-            self._multipliers = self._ways[name]
+        if name in self.multipliers.names:
+            self.multipliers.take(name)
             self.begin(self._state, self._accepted)
 
     @property
@@ -323,15 +268,14 @@ class Trials:
             self._semismooth.share = share
 
     @property
-    def _exact(self) -> bool:
-        """Whether multipliers, if there are any, stand for no compliance."""
-        return self._multipliers is None or self._multipliers.exact
+    def _own(self) -> Multipliers | None:
+        """Multipliers, if there are any."""
+        return self.multipliers.taken
 
     @property
     def _semismooth(self) -> Semismooth | Layer | None:
         """What follows every step of Newton's method."""
-        own = None if self._multipliers is None else self._multipliers.semismooth
-        return self._layer or own
+        return self._layer or (None if self._own is None else self._own.semismooth)
 
     def slip_stiffness(self, dt: float) -> float:
         """Largest stiffness of a physical adhesion against slip, stress/length; 0 for others.
@@ -339,7 +283,7 @@ class Trials:
         Args:
             dt: Time increment.
         """
-        if self._multipliers is not None and self._multipliers.tangential:
+        if self._own is not None and self._own.tangential:
             return 0.0
         return float(self.interface.slip_stiffness(dt))
 
@@ -357,7 +301,7 @@ class Trials:
             first = self._layer.without(first)
             self._layer.stiffer(compliance, (start, begun))
         else:
-            normal = None if self._multipliers is None else self._multipliers.semismooth
+            normal = None if self._own is None else self._own.semismooth
             self._layer = Layer(compliance, (start, begun), normal, self.master.at, self._comm)
         self._take(soft, stiff)
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
@@ -368,8 +312,7 @@ class Trials:
 
         Integration points are too many for that.
         """
-        alone = self._points.at_nodes and self._multipliers is None
-        return alone and augmentable(self.interface)
+        return self._points.at_nodes and self.multipliers.penalised
 
     def comply(self, stiffness: float, size: float) -> None:
         """Come to penalties by way of multipliers, see `Compliant`, until `take_away`.
@@ -378,15 +321,13 @@ class Trials:
             stiffness: Of the bodies, stress/length.
             size: Facet size, length.
         """
-        penalties = self.interface.penalties()
-        self._multipliers = Compliant(Augmentation(), size, penalties, self._comm)
-        self._multipliers.suit(stiffness)
+        self.multipliers.comply(stiffness, size)
         self.begin(self._state, self._accepted)
 
     def take_away(self) -> None:
         """Take the layer away, or multipliers that are a way to penalties."""
-        if not self._exact:
-            self._multipliers = None
+        if not self.multipliers.exact:
+            self.multipliers.taken = None
             self._take(self.interface, self.interface)
             self.begin(self._state, self._accepted)
         if self._layer is not None:
@@ -403,8 +344,8 @@ class Trials:
     def _stiffen(self) -> None:
         """Multiply the penalties of the laws as the multipliers say."""
         laws, stiff = self._laws, self._stiff_laws
-        if self._multipliers is not None:
-            laws = laws.stiffened(*self._multipliers.factors)
+        if self._own is not None:
+            laws = laws.stiffened(*self._own.factors)
             if self._semismooth is not None:
                 stiff = stiff.stiffened(*self._semismooth.stiff_factors)
         self.master.take(laws, stiff)
@@ -418,24 +359,26 @@ class Trials:
 
     def _step(self, trial: Snapshot) -> ContactTrial:
         """A trial with the frames of the master."""
-        own, answer, far = self._multipliers, trial.response, np.full(len(self.start), np.inf)
+        own, answer, far = self._own, trial.response, np.full(len(self.start), np.inf)
         covered = self._points.covered(trial.areas).clip(LEAST, 1.0)
         shared = self.shared.at(self._points.nodes[:, 0])
-        slight = self._slight & self._exact
+        slight = self._slight & self.multipliers.exact
+        closeness = far if own is None else own.closeness(self.start, answer.pressure, answer.gap)
         return ContactTrial(
-            self.start,
-            answer,
-            trial.areas,
-            self._frames(answer.state),
-            self._frames(self.start),
-            self.master.axes(answer),
-            self.immovable & self._exact | slight,
-            slight,
-            covered,
-            np.stack([far, far], 1) if own is None else own.rigidity(shared, covered),
-            np.linalg.norm(trial.points, axis=1),
-            self.master.held if self._exact else None,
-            far if own is None else own.closeness(self.start, answer.pressure, answer.gap),
+            start=self.start,
+            answer=answer,
+            areas=trial.areas,
+            now=self._frames(answer.state),
+            before=self._frames(self.start),
+            axes=self.master.axes(answer),
+            softness=self.interface.tangential.softness(),
+            immovable=self.immovable & self.multipliers.exact | slight,
+            slight=slight,
+            covered=covered,
+            rigidity=np.stack([far, far], 1) if own is None else own.rigidity(shared, covered),
+            far=np.linalg.norm(trial.points, axis=1),
+            held=self.master.held if self.multipliers.exact else None,
+            closeness=closeness,
         )
 
     def _frames(self, state: State) -> Frames:

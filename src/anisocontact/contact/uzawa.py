@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Codes, Flags, Floats
+from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.multipliers import (
     SHARE,
-    ContactTrial,
     Multipliers,
     NotHeldError,
 )

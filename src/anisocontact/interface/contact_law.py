@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, TypedDict
 
+import numpy as np
+
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Codes, Flags, Floats, Locals
@@ -108,6 +110,10 @@ class AdhesionAndFriction(Remade):
     def penalty(self) -> float:
         """Least stiffness of adhesion, stress/length."""
         return min(self.adhesion.named[1].get("stiffness", [1.0]))
+
+    def softness(self) -> Floats:
+        """Least stiffness of adhesion over that along each of its axes, (2,)."""
+        return np.asarray(self.penalty() / np.array(self.adhesion.named[1].get("stiffness", 1.0)))
 
     def stiffest(self) -> float:
         """Largest stiffness of adhesion, stress/length; 0 where it has none."""

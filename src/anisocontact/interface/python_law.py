@@ -140,6 +140,10 @@ class PythonLaw:
         """The law has none: 1."""
         return 1.0
 
+    def softness(self) -> Floats:
+        """The law has no stiffness along axes: 1."""
+        return np.ones(2)
+
     def stiffest(self) -> float:
         """The law has no stiffness that is known: 0."""
         return 0.0

@@ -180,16 +180,17 @@ class Attempts:
 
     def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts
+        stiff, layered = self._continuation.stiff(), replace(full, layered=True)
         if self._problem.contact_term.simultaneous:
             cycles = IN_CYCLES in self._problem.contact_term.ways
             ways = _following(searching, full, cycles, trusts, softer)
         else:
-            stiff = self._continuation.stiff()
             both = [searching, full] if stiff else self._apart(searching, full)
+            if stiff and self._continuation.easy:
+                return [*[layered] * (2 if trusts else 1), *both]
             ways = [both[0], *both] if trusts else both
-        if self._continuation.stiff():
-            easy = self._continuation.easy and not trusts
-            ways.insert(0 if easy else 2 if trusts else 1, replace(full, layered=True))
+        if stiff:
+            ways.insert(2 if trusts else 1, layered)
         return ways
 
     def _apart(self, searching: _Way, full: _Way) -> list[_Way]:
@@ -245,8 +246,8 @@ class Attempts:
             raise
         finally:
             problem.stabilisation.flow.stop()
-            self._continuation.end()
             if not problem.together.apart:
+                self._continuation.end()
                 problem.roll_back()
 
     def _damping(self) -> float:

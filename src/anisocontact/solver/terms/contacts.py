@@ -197,8 +197,8 @@ class Contacts(Term):
 
     @property
     def ways(self) -> frozenset[str]:
-        """Ways to the multipliers that a contact has, see `Trials.ways`."""
-        return frozenset(way for one in self._trials for way in one.ways)
+        """Ways to the multipliers that a contact has, see `Ways.names`."""
+        return frozenset(way for one in self._trials for way in one.multipliers.names)
 
     def take_way(self, name: str) -> None:
         """Find multipliers in another way in this attempt, see `Trials.take_way`."""
