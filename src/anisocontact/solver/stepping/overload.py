@@ -25,8 +25,9 @@ from anisocontact.solver.terms.free_modes import ConnectedBody
 FLAT = 0.99
 #: Share of a direction that has to be among the free motions of a body.
 FREE = 0.99
-#: Load over the limit of friction that is too much: below, something else is the cause.
-TOO_MUCH = 1.001
+#: Load over the limit of friction that is too much. Below, something else may be the cause, for
+#: normals turn a little while bodies deform.
+TOO_MUCH = 1.005
 #: Share of what friction can hold that the accepted loads have to have reached where the loads do
 #: not say what presses a body on, which changes along an increment, or loads of later ones count.
 NEARLY = 0.97
