@@ -100,7 +100,11 @@ def test_volume_that_is_kept_wears_no_factor(nu: float) -> None:
     factor.close()
 
 
-@pytest.mark.parametrize(("material", "count"), [(RUBBER, 2), (HARDLY_COMPRESSIBLE, 1)])
+@pytest.mark.parametrize(
+    ("material", "count"),
+    [(RUBBER, 2), (HARDLY_COMPRESSIBLE, 2), (HARDLY_COMPRESSIBLE | {"nu": 0.4999}, 1)],
+    ids=["rubber", "nu = 0.499", "nu = 0.4999"],
+)
 def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
     """Where pressures follow there is no line search: the second attempt would be the first.
 
