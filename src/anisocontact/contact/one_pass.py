@@ -176,13 +176,17 @@ class Pass:
         self._fixed = fixed
         self._begin()
 
+    def meeting(self) -> Flags:
+        """Points that meet their master in the accepted increment, pressed or not, (n,)."""
+        last = self.last
+        return self.master.located(last.state) & (last.gap <= TOUCHING * self.slave_points.size)
+
     def undetermined(self) -> int:
         """Slave points whose pressure nothing says, over all ranks, accepted increment; collective.
 
         They touch, and supports hold them and what they meet along the normal.
         """
-        last = self.last
-        met = self.master.located(last.state) & (last.gap <= TOUCHING * self.slave_points.size)
+        met = self.meeting()
         own = self.trials.immovable & met if self.trials.augmented else met[:0]
         return int(self._comm.allreduce(int(np.count_nonzero(own))))
 

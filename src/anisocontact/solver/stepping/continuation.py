@@ -115,21 +115,14 @@ class Continuation:
         stiffness: float,
         damping: Callable[[], float] | None,
     ) -> NewtonResult:
-        """Newton's method with multipliers for stiff penalties, and layers for some contacts."""
+        """Newton's method with multipliers for stiff penalties, and one layer after the other.
+
+        Each layer is stiffer than the last; without any there is nothing to go on to.
+        """
         for contact in self._by_multipliers():
             contact.trials.comply(contact.body_stiffness, contact.facet_size)
         if not layered:
             return self._newton.solve(x)
-        return self._with_layers(x, layered, stiffness, damping)
-
-    def _with_layers(
-        self,
-        x: Vec,
-        layered: Sequence[Contact],
-        stiffness: float,
-        damping: Callable[[], float] | None,
-    ) -> NewtonResult:
-        """Newton's method with one layer after the other, each stiffer than the last."""
         most, spent = max(self.ratio(contact) for contact in layered), 0
         while True:
             for contact in layered:

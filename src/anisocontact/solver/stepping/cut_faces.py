@@ -46,9 +46,8 @@ class CutFaceWatch:
         for contact, on_cut in self._watched:
             kept = contact.covered()[on_cut]
             share = contact.extreme(1.0 - kept / (contact.extreme(kept) or 1.0))
-            closed = (
-                contact.extreme(contact.last.pressure) > 0.0
-            )  # nodes at the cut may have opened
+            # anywhere: nodes at the cut may have opened
+            closed = contact.extreme(contact.last.pressure) > 0.0
             if closed and share > LOST:
                 found[contact.name] = share
         return found

@@ -31,8 +31,6 @@ TOO_MUCH = 1.005
 #: Share of what friction can hold that the accepted loads have to have reached where the loads do
 #: not say what presses a body on, which changes along an increment, or loads of later ones count.
 NEARLY = 0.97
-#: Gap that is none, over the size of a facet.
-TOUCHING = 1e-6
 #: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted.
 MANY = 2
 #: Share of a motion that is a turn from which on a moment is told.
@@ -279,12 +277,11 @@ def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, boo
         if friction is None:
             return None, False, False
         last, areas = contact.last, contact.areas
-        touching = contact.located() & (last.gap <= TOUCHING * contact.facet_size)
         rows = [
             (contact.points - body.centre) / body.size,
             side * last.normal,
             areas * last.pressure,
-            areas * touching,
+            areas * contact.meeting(),
             _resistance(friction, last.directions_friction, last.normal),
         ]
         every = problem.comm.allgather(rows)
