@@ -17,8 +17,8 @@ from anisocontact.bulk import UserEnergy, make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, Model, build_box
-from anisocontact.point import PrescribedPath
+from anisocontact.mesh import BoxSpec, Model, build_box, make_shape
+from anisocontact.point import DeadLoad, PrescribedPath
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ContactProblem, Problem, Step, Until
 from anisocontact.surfaces import make_surface
@@ -95,6 +95,38 @@ WRONG = {
     "a list for a vector": (
         lambda m: Step("a", 1, {"block.top": [1, 2, 3]}),
         r"displacement.block.top: \[1, 2, 3\] given, values by axis needed",
+    ),
+    "a number for a motion": (
+        lambda m: Step("a", 1, motion={"die": 0.1}),
+        "motion.die: 0.1 given, values by axis needed",
+    ),
+    "a number for loads": (
+        lambda m: Step("a", 1, load={"die": np.nan}),
+        "load.die: nan given, values by axis needed",
+    ),
+    "a table for one number": (
+        lambda m: Friction(coefficients=np.zeros((2, 2))),
+        r"coefficients: .* given, one or two numbers are needed",
+    ),
+    "a table for a word": (
+        lambda m: make_shape("disc", radius=1.0, cells=(8, 2), part=np.eye(2)),
+        r"part: .* given, allowed: whole, half, quarter",
+    ),
+    "no whole number of cells": (
+        lambda m: make_shape("disc", radius=1.0, cells=(8, np.nan)),
+        r"cells: \(8, nan\) given, 2 whole numbers are needed",
+    ),
+    "a number beyond all floats": (
+        lambda m: NormalLaw(penalty=10**400),
+        r"penalty: 10+\.\.\.0+ given, finite numbers are needed",
+    ),
+    "a duration beyond all floats": (
+        lambda m: Step("a", 1, duration=10**400),
+        "duration: int given, a number needed",
+    ),
+    "one number for a way": (
+        lambda m: DeadLoad(force=np.array(3.0), start=(0, 0, 0), pressure=1.0),
+        "times: missing; times of start and end are needed",
     ),
     "a group for groups": (
         lambda m: Problem(m, dict.fromkeys(m.body_names(), STEEL), symmetry="block.left"),

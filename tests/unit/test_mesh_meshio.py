@@ -142,3 +142,19 @@ def test_what_is_wrong_is_one_line(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "meshio", None)
     with pytest.raises(InputError, match=r"need meshio: pip install 'anisocontact\[meshes\]'"):
         file_arrays(tmp_path / "flat.vtu")
+
+
+@pytest.mark.parametrize(
+    ("nodes", "points", "said"),
+    [
+        ([0, 1, 2, 3, 4, 5, 6, 99], POINTS[:8], "a cell names node 99 counted from 0, there are 8"),
+        ([0, 1, 2, 3, 4, 5, 6, -1], POINTS[:8], "a cell names node -1 counted from 0, there are 8"),
+        (range(8), [*POINTS[:7], [0, np.inf, 1]], r"1 nodes .* not finite, such as \(0, inf, 1\)"),
+    ],
+)
+def test_nodes_that_are_nowhere(tmp_path, nodes, points, said):
+    """Requirement: cells of nodes that the file lacks, or that are at no place, are one line; -1
+    is not the last node, which a list of Python takes it for."""
+    meshio.write(tmp_path / "cube.vtu", meshio.Mesh(points, [("hexahedron", [list(nodes)])]))
+    with pytest.raises(InputError, match=said):
+        file_arrays(tmp_path / "cube.vtu")

@@ -104,6 +104,32 @@ def test_history_can_be_read_while_a_row_is_written(tmp_path):
     assert read_history(path)["time"].tolist() == []
 
 
+def test_history_goes_on_with_other_columns(tmp_path):
+    """Requirement: steps and resultants may be added to a run that goes on, and be taken out; no
+    value of any of them is lost, and a run that is killed before its next checkpoint finds the
+    rows of the one before in the table that has got columns since."""
+    path = tmp_path / "history.csv"
+    history = HistoryTable(path)
+    history.append({"step": "a", "cut": 1.5, "top": 2.5})
+    state = history.state()
+    history.append({"step": "lost", "cut": 0.0, "top": 0.0})
+
+    def goes_on(step: str) -> dict[str, list[object]]:
+        again = HistoryTable(path)
+        again.resume(state)
+        again.append({"step": step, "top": 3.5, "right": 4.5})
+        assert again.state()["size"] == path.stat().st_size
+        return {name: column.tolist() for name, column in read_history(path).items()}
+
+    for step in ("b", "c"):
+        table = goes_on(step)
+        assert list(table) == ["step", "cut", "top", "right"]
+        assert table["step"] == ["a", step]
+        np.testing.assert_equal(table["cut"], [1.5, np.nan])
+        np.testing.assert_equal(table["right"], [np.nan, 4.5])
+        assert table["top"] == [2.5, 3.5]
+
+
 def test_results_of_a_folder_without_any(tmp_path):
     with pytest.raises(InputError, match="holds no results"):
         Results(tmp_path)

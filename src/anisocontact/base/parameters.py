@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import reprlib
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, SupportsFloat, TypeGuard
+from typing import Any
 
 import numpy as np
 
@@ -256,7 +257,7 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
     """
     field = field or p.name
     if p.kind == "choice":
-        if given not in p.choices:
+        if not isinstance(given, str) or given not in p.choices:
             raise InputError(f"{given!r} given, allowed: {', '.join(p.choices)}", field=field)
         return [float(p.choices.index(str(given)))]
     numbers = _numbers(p, given, field)
@@ -273,27 +274,30 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
         return [float(given)]
     is_list = _is_list(given)
     if p.alike and not is_list:
-        if not _is_number(given):
-            raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
-        return [float(given) * k for k in p.alike]
+        return [_number(p, given, given, field) * k for k in p.alike]
     if p.kind in ("axis", "array"):
         return _nested_numbers(p, given, field)
     items: list[Any] = list(given) if is_list else [given]  # type: ignore[call-overload]
-    if not all(map(_is_number, items)):
-        raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
-    numbers = [float(v) for v in items]
+    numbers = [_number(p, v, given, field) for v in items]
     size = _SIZES.get(p.kind, p.count)
     scalar_form = size == 1
     if scalar_form == is_list or (size is not None and len(numbers) != size):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
-    if p.kind in ("integer", "integers") and any(v != int(v) for v in numbers):
+    if p.kind in ("integer", "integers") and not all(v.is_integer() for v in numbers):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     return numbers
 
 
-def _is_number(given: Any) -> TypeGuard[SupportsFloat]:
-    """Whether something is one number; texts of NumPy and classes have what makes them one, too."""
-    return hasattr(given, "__float__") and not isinstance(given, bool | str | type)
+def _number(p: Parameter, one: Any, given: object, field: str) -> float:
+    """One of the numbers given; not finite where it is beyond all that can be computed with."""
+    # texts of NumPy and classes have what makes a number of them, too; rows of an array have it
+    if hasattr(one, "__float__") and not isinstance(one, bool | str | type):
+        with suppress(TypeError):
+            try:
+                return float(one)
+            except OverflowError:
+                return math.inf
+    raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
 
 
 def _is_list(given: object) -> bool:

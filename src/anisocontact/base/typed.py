@@ -122,12 +122,20 @@ def _fits_class(kind: type[Any], value: Any) -> bool:
         number = Integral if kind is int else Real
         value = value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
         is_number = isinstance(value, number) and not isinstance(value, bool | np.bool_)
-        return is_number and not math.isnan(value)
+        return is_number and _counts(value)
     if kind is Path:
         return isinstance(value, str | Path)
     if getattr(kind, "_is_protocol", False):
         return all(hasattr(value, name) for name in typing.cast(Any, kind).__protocol_attrs__)
     return isinstance(value, kind)
+
+
+def _counts(value: Any) -> bool:
+    """Whether a number is one to compute with: not NaN, no integer beyond all floating numbers."""
+    try:
+        return not math.isnan(value)
+    except OverflowError:
+        return False
 
 
 def _fits_generic(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:

@@ -81,8 +81,8 @@ class WholeMesh:
             functions of fewer nodes say that these are.
 
         Raises:
-            InputError: A body is unknown, cells are of several orders, flat or inverted, or a facet
-                of a surface belongs to no cell.
+            InputError: A body is unknown, a node is missing or nowhere, cells are of several
+                orders, flat or inverted, or a facet of a surface belongs to no cell.
         """
         known = list(dict.fromkeys(name for labels in self.bodies for name in labels if name))
         for name in bodies or ():
@@ -92,6 +92,7 @@ class WholeMesh:
         joined = self._by_kind(wanted)
         if not joined:
             raise InputError("no element is in a body")
+        _check_nodes(joined, self.points)
         wrong = 0
         for kind, (given, labels) in joined.items():
             nodes, count = turned(kind[0], given, self.points, FACES)
@@ -197,6 +198,20 @@ class WholeMesh:
                 if len(there):
                     found[key] = mesh.points[there]
         return found
+
+
+def _check_nodes(kinds: Mapping[Kind, Elements], points: Floats) -> None:
+    """Refuse cells whose nodes are missing, or nowhere."""
+    used = np.unique(np.concatenate([nodes.ravel() for nodes, _ in kinds.values()]))
+    lost = used[(used < 0) | (used >= len(points))]
+    if len(lost):
+        raise InputError(f"a cell names node {lost[0]} counted from 0, there are {len(points)}")
+    endless = used[~np.isfinite(points[used]).all(axis=1)]
+    if len(endless):
+        place = ", ".join(f"{x:g}" for x in points[endless[0]])
+        raise InputError(
+            f"{len(endless)} nodes have coordinates that are not finite, such as ({place})"
+        )
 
 
 def _check_degenerate(kinds: Mapping[Kind, Elements]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -97,7 +98,7 @@ class Schedule:
         return a
 
 
-def knot_times(given: npt.ArrayLike | None, value: object, field: str = "times") -> Floats:
+def knot_times(given: npt.ArrayLike | None, value: Any, field: str = "times") -> Floats:
     """Times of the knots: as given, or 0, 1, 2, ... for the knots of `value`.
 
     Args:
@@ -112,7 +113,7 @@ def knot_times(given: npt.ArrayLike | None, value: object, field: str = "times")
         InputError: Not increasing, or missing where they cannot be counted.
     """
     if given is None:
-        n = 0 if callable(value) or not hasattr(value, "__len__") else len(value)
+        n = 0 if callable(value) or not np.ndim(value) else len(value)
         if n < 2:
             raise InputError("missing; times of start and end are needed", field=field)
         return np.arange(float(n))

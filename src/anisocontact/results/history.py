@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -12,12 +13,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.whole_files import replacing
+
 #: Columns that hold text.
 TEXT = ("step",)
 
 
 class HistoryTable:
     """The table, a row appended at a time; a row is on disk before the next increment starts.
+
+    A run that goes on may have other columns, as of steps that were added: the table then has all
+    of them, with `nan` where a row has no such value.
 
     Args:
         path: The file, begun with the first row.
@@ -26,31 +32,49 @@ class HistoryTable:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._columns: list[str] = []
-        self._size = 0
+        self._size = self._rows = 0
 
     def state(self) -> dict[str, Any]:
         """What `resume` needs, as JSON can have it."""
-        return {"columns": self._columns, "size": self._size}
+        return {"columns": self._columns, "size": self._size, "rows": self._rows}
 
     def resume(self, state: Mapping[str, Any]) -> None:
         """Go on behind the rows of a state; later ones are cut off."""
         self._columns, self._size = list(state["columns"]), state["size"]
-        if self._size:
-            os.truncate(self._path, self._size)
-        else:
+        self._rows = state["rows"]
+        if not self._size:
             self._path.unlink(missing_ok=True)
+            return
+        header, *rows = _cells(self._path)
+        if header == self._columns:
+            os.truncate(self._path, self._size)
+        else:  # has got columns since
+            self._write(header, rows[: self._rows])
 
     def append(self, row: Mapping[str, Any]) -> None:
-        """Add a row of nested numbers; the first one fixes the columns."""
+        """Add a row of nested numbers."""
         values = dict(flat(row))
-        text = ""
-        if not self._columns:
-            self._columns = list(values)
-            text = _line(self._columns)
-        text += _line([_shown(values[column]) for column in self._columns])
-        self._path.parent.mkdir(exist_ok=True)
+        known = set(self._columns)
+        new = [column for column in values if column not in known]
+        if new:
+            self._widen(new)
+        text = _line([_shown(values.get(column, math.nan)) for column in self._columns])
         with self._path.open("ab") as file:
             self._size += file.write(text.encode())
+        self._rows += 1
+
+    def _widen(self, new: Sequence[str]) -> None:
+        """Give the table further columns, the first ones too."""
+        rows = _cells(self._path)[1:] if self._columns else []
+        none = [_shown(math.nan)] * len(new)
+        self._write([*self._columns, *new], [[*row, *none] for row in rows])
+
+    def _write(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """Write the table anew, the file replaced whole."""
+        self._path.parent.mkdir(exist_ok=True)
+        with replacing(self._path) as draft:
+            self._size = draft.write_bytes("".join(map(_line, [columns, *rows])).encode())
+        self._columns = list(columns)
 
 
 def flat(nested: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -83,8 +107,7 @@ def read_history(path: Path) -> dict[str, npt.NDArray[Any]]:
     Returns:
         Column name -> values, text for `step`, numbers else.
     """
-    text = path.read_text(encoding="utf-8")
-    rows = list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1])))
+    rows = _cells(path)
     if not rows:
         return {}
     columns: Sequence[Sequence[str]] = list(zip(*rows[1:], strict=True)) or [()] * len(rows[0])
@@ -92,6 +115,12 @@ def read_history(path: Path) -> dict[str, npt.NDArray[Any]]:
         name: np.array(column, dtype=str if name in TEXT else float)
         for name, column in zip(rows[0], columns, strict=True)
     }
+
+
+def _cells(path: Path) -> list[list[str]]:
+    """Rows of the file as texts, columns first; one that is being written is left out."""
+    text = path.read_text(encoding="utf-8")
+    return list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1])))
 
 
 def _shown(value: Any) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from anisocontact.base.course import Course, way_cut_off
 from anisocontact.base.errors import InputError
@@ -95,12 +96,12 @@ class Step:
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
         for kind in ("displacement", "anchor", *_FORCES):
             self._check_vectors(kind)
-        for body, components in self.load.items():
+        for body, components in self._by_component("load"):
             for component, value in components.items():
                 self._check_value("load", f"load.{body}.{component}", value)
         motion = {
             body: turns_in_radian(components, f"step {self.name!r}.motion.{body}")
-            for body, components in self.motion.items()
+            for body, components in self._by_component("motion")
         }
         object.__setattr__(self, "motion", motion)
         for kind in _PLAIN:
@@ -164,13 +165,17 @@ class Step:
                     raise self._error(f"{kind}.{name}", text)
 
     def _check_vectors(self, kind: str) -> None:
-        groups: Mapping[str, object] = getattr(self, kind)
-        for group, values in groups.items():
-            if not isinstance(values, Mapping):
-                text = f'{values!r} given, values by axis needed, as in {{"x": 0.1}}'
-                raise self._error(f"{kind}.{group}", text)
+        for group, values in self._by_component(kind):
             for axis, value in values.items():
                 self._check(kind, group, axis, value)
+
+    def _by_component(self, kind: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """Groups or bodies of one sort, with what is given for each."""
+        for name, values in getattr(self, kind).items():
+            if not isinstance(values, Mapping):
+                text = f'{values!r} given, values by axis needed, as in {{"x": 0.1}}'
+                raise self._error(f"{kind}.{name}", text)
+            yield name, values
 
     def _check(self, kind: str, group: str, axis: str, value: Goal | None) -> None:
         where = f"{kind}.{group}.{axis}"
