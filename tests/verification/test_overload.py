@@ -15,6 +15,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import CoupledFace, Problem, Solver, Step, StoppedError
+from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.overload import (
     Overload,
     exhausted,
@@ -23,6 +24,7 @@ from anisocontact.solver.stepping.overload import (
     too_much_load,
 )
 from anisocontact.solver.stepping.report import Cut
+from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.surfaces import make_surface
 
 MU, PULL = 0.3, 0.5
@@ -228,9 +230,38 @@ def test_a_moment_needs_evidence_and_a_force_none() -> None:
 
 
 def test_what_fails_for_a_reason_of_its_own_is_told_as_well() -> None:
-    """Requirement: cells inside out are not hidden by loads that friction does not hold either."""
+    """Requirement: loads beyond friction hide neither cells inside out nor a refusal."""
     sure, unsure = Overload("loads", told=True, certain=True), Overload("loads", True, False)
     assert reason_of("gone", False, []) == "gone"
     assert reason_of("gone", False, [sure]) == "loads"
     assert reason_of("gone", False, [unsure]) == "gone; loads"
     assert reason_of("inside out", True, [sure]) == "loads; inside out"
+    failed = NewtonResult(20, [1.0, 1e-9], "turned by 16.7 degrees")
+    assert [Outcome(failed, refused=refused).grave for refused in (True, False)] == [True, False]
+
+
+def test_a_body_that_slides_up_a_bowl_is_not_told_that_friction_cannot_hold_it() -> None:
+    """A block in a bore of radius 5 under a weight of 10 is pushed across it by 4, then by 8.
+
+    Requirement: friction holds less than the push, and the block slides up to where its weight
+    makes up for it, at `atan(0.8) - atan(0.3)`, 22 degrees: nothing is told, nothing is final, and
+    the bodies may flow at once. That it slides is told where this is what a step waits for. A line
+    said that friction holds 16 of 33, and ended runs that had failed for a reason of their own.
+    """
+    cube = make_shape("box", origin=(-0.5, -0.5, -4.975), size=(1, 1, 0.5), cells=(1, 1, 1))
+    model = build_mesh([Body("block", cube)])
+    bore = make_surface("cylinder", point=(0, 0, 0), axis=(0, 1, 0), radius=5.0, inside=True)
+    contact = Contact(model, "block.bottom", bore, Friction(coefficients=MU))
+    problem = Problem(model, {"block": make_material("neo-hookean", E=1e3, nu=0.0)}, [contact])
+    steps = [
+        Step("weight", 1, force={"block.top": {"z": -10.0}}),
+        Step("push", 2, force={"block.top": {"z": -10.0, "x": 8.0}}),
+    ]
+    for accepted in Solver(problem, steps).run():
+        if accepted.step == "push":
+            break
+    assert (too_much_load(problem, 1.0, 0.5), exhausted(problem, 0.5)) == ([], [])
+    (ahead,) = past_holding(problem, 1.0, 0.5, 1)
+    assert not (ahead.told or ahead.certain)
+    (slides,) = too_much_load(problem, 1.0, 0.5, 1.0, contact)
+    assert slides.further

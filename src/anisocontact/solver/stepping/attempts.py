@@ -44,6 +44,7 @@ class Outcome:
         failed: A point at which the laws failed, on the first rank that has one.
         relaxed: Whether penalties hold where no multipliers were found.
         softer: Whether smaller penalties in the projections led to the multipliers.
+        refused: Whether an equilibrium was found that no model of a body holds for.
     """
 
     result: NewtonResult
@@ -53,6 +54,12 @@ class Outcome:
     failed: FailedPoint | None = None
     relaxed: bool = False
     softer: bool = False
+    refused: bool = False
+
+    @property
+    def grave(self) -> bool:
+        """Whether the failure is explained by itself, whatever loads there are."""
+        return self.refused or any(culprit.kind in GRAVE for culprit in self.culprits)
 
     @property
     def iterations(self) -> int:
@@ -176,7 +183,8 @@ class Attempts:
         reason = _reason(failed, found, self._problem.contacts)
         result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()
-        return Outcome(result, tuple(found), self._final or hopeless, hint, self._failed)
+        final, failed_at = self._final or hopeless, self._failed
+        return Outcome(result, tuple(found), final, hint, failed_at, refused=self._final)
 
     def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts

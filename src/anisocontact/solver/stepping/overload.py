@@ -8,7 +8,7 @@ meets first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,9 +17,10 @@ import scipy
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
+from anisocontact.solver.stepping.driven import Driven, deformable, driven
+from anisocontact.solver.stepping.further_on import Slide
 from anisocontact.solver.stepping.limit_load import Limit, PressedPoints, limit
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.terms.free_modes import ConnectedBody
 
 #: Sum of the normal forces over the sum of their sizes from which on a contact is flat.
 FLAT = 0.99
@@ -43,31 +44,6 @@ WITHOUT = "hold it, or lead it by displacements"
 
 
 @dataclass(frozen=True)
-class _Driven:
-    """A body that loads may drive along its contacts.
-
-    Attributes:
-        name: In words.
-        contacts: Its contacts, each with 1 where the body is the slave, and -1 where the master.
-        centre: Point that moments are about, (3,), length.
-        size: Of the body, length.
-        motions: Translations and turns times the size that only contact can hold, (k, 6).
-        load: Force and moment over the size, (6,), at the fraction that is looked at.
-        before: The same in the accepted state.
-        rigid: Whether it is a rigid surface.
-    """
-
-    name: str
-    contacts: Sequence[tuple[Contact, float]]
-    centre: Floats
-    size: float
-    motions: Floats
-    load: Floats
-    before: Floats
-    rigid: bool = False
-
-
-@dataclass(frozen=True)
 class Overload:
     """Loads that friction does not hold.
 
@@ -76,11 +52,13 @@ class Overload:
         told: Whether there is evidence enough to say so.
         certain: Whether nothing that presses the body otherwise by then can make it hold: a contact
             that is open yet, or prescribed motion.
+        further: Whether it is not told as the body rests further on, see `further_on`.
     """
 
     text: str
     told: bool
     certain: bool
+    further: bool = False
 
 
 def too_much_load(
@@ -97,17 +75,20 @@ def too_much_load(
         fraction: Fraction of the step whose loads are looked at.
         now: Fraction of the step of the accepted state.
         over: Load over the limit of friction that is too much.
-        by: Contact that has to be the only one that holds the body; any if left out.
+        by: Contact that has to be the only one that holds the body, which may rest further on; any
+            if left out, and none that rests there.
     """
-    bodies = _driven(problem, fraction, now)
+    bodies = driven(problem, fraction, now)
     if by is not None:
         bodies = [one for one in bodies if all(c is by for c, _ in one.contacts)]
-    return [one for one in _found(problem, bodies, over) if one.told]
+    found = _found(problem, bodies, over)
+    return [one for one in found if one.told or (one.further and by is not None)]
 
 
 def exhausted(problem: Problem, now: float) -> list[Overload]:
     """As of `too_much_load` at the end of the step, of bodies that friction hardly holds now."""
-    return _found(problem, _driven(problem, 1.0, now), soon=True)
+    found = _found(problem, driven(problem, 1.0, now), soon=True)
+    return [one for one in found if one.told]
 
 
 def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:
@@ -123,9 +104,9 @@ def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> li
     """
     if not cuts:
         return []
-    found = _found(problem, _deformable(problem, fraction, now))
+    found = _found(problem, deformable(problem, fraction, now))
     if cuts > MANY:
-        found += _found(problem, _deformable(problem, 1.0, now), soon=True)
+        found += _found(problem, deformable(problem, 1.0, now), soon=True)
     return found
 
 
@@ -143,18 +124,14 @@ def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:
     return "; ".join([attempt, *texts])
 
 
-def _driven(problem: Problem, fraction: float, now: float) -> list[_Driven]:
-    return [*_deformable(problem, fraction, now), *_rigid(problem, fraction, now)]
-
-
 def _found(
-    problem: Problem, bodies: Iterable[_Driven], over: float = TOO_MUCH, soon: bool = False
+    problem: Problem, bodies: Iterable[Driven], over: float = TOO_MUCH, soon: bool = False
 ) -> list[Overload]:
     found = (_overload(problem, one, over, soon) for one in bodies)
     return [one for one in found if one is not None]
 
 
-def _overload(problem: Problem, body: _Driven, over: float, soon: bool) -> Overload | None:
+def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overload | None:
     """Whether friction does not hold a body; None where it may.
 
     Args:
@@ -187,7 +164,11 @@ def _overload(problem: Problem, body: _Driven, over: float, soon: bool) -> Overl
     slips = _slipping(body) if touched else ""
     cure = CURE if rubs else WITHOUT
     text = f"{_line(body, then, found, when)}{least}: {cure}{slips}"
-    return Overload(text, near or certain, certain)
+    told, grown = near or certain, float(then.force.sum() / points.force.sum())
+    contacts = [contact for contact, _ in body.contacts]
+    slide = Slide(found.motion, body.centre, body.size, body.loads, contacts, grown)
+    further = told and slide.rests(1.0 - found.held)
+    return Overload(text, told and not further, certain and not further, further)
 
 
 def _moves(problem: Problem) -> bool:
@@ -196,75 +177,13 @@ def _moves(problem: Problem) -> bool:
     return bool(supports > 0 or not problem.rigid.rest)
 
 
-def _shifts(body: _Driven) -> Floats:
+def _shifts(body: Driven) -> Floats:
     """Those of its motions that are translations, orthonormal, (j, 6)."""
     mixed = scipy.linalg.null_space(body.motions[:, 3:].T)
     return np.asarray(mixed.T @ body.motions)
 
 
-def _deformable(problem: Problem, fraction: float, now: float) -> Iterator[_Driven]:
-    """Deformable bodies that only contact holds, with those that lead their faces."""
-    x, u = problem.model.space.tabulate_dof_coordinates(), problem.u.x.array.reshape(-1, 3)
-    for free in problem.stabilisation.loose:
-        body = free.body
-        arms = (x + u)[body.nodes] - body.centre
-        loads = []
-        for at in (fraction, now):
-            problem.loads.set_load_factor(at, problem.dt)
-            force = problem.layout.assembled(problem.loads.force(u)).reshape(-1, 3)[body.nodes]
-            moment = np.cross(arms, force).sum(axis=0)
-            local = np.concatenate([force.sum(axis=0), moment / body.size])
-            loads.append(problem.comm.allreduce(local) + _leads(problem, body, at))
-        problem.loads.set_load_factor(problem.load_factor, problem.dt)
-        sides = [(c, {problem.model.body_of(g) for g in c.groups[1:]}) for c in free.contacts]
-        yield _Driven(
-            f"body {body.name!r}",
-            [
-                (c, 1.0 if problem.model.body_of(c.slave) in body.parts else -1.0)
-                for c, masters in sides
-                if not (masters & set(body.parts) and problem.model.body_of(c.slave) in body.parts)
-            ],
-            body.centre,
-            body.size,
-            free.left,
-            *loads,
-        )
-
-
-def _leads(problem: Problem, body: ConnectedBody, fraction: float) -> Floats:
-    """Loads on rigid bodies that faces of a body follow, as of `_Driven.load`."""
-    total = np.zeros(6)
-    for rigid, faces in problem.rigid.coupled.items():
-        if any(problem.model.body_of(face.group) in body.parts for face in faces):
-            force, moment = np.split(problem.rigid.load(rigid, fraction), 2)
-            moment = moment + np.cross(rigid.position - body.centre, force)
-            total += np.concatenate([force, moment / body.size])
-    return total
-
-
-def _rigid(problem: Problem, fraction: float, now: float) -> Iterator[_Driven]:
-    """Rigid surfaces that loads drive."""
-    for body in problem.rigid.free:
-        free = ~problem.rigid.holds(body)
-        contacts = problem.rigid.contacts[body]
-        if not (contacts and free.any()) or problem.rigid.coupled[body]:
-            continue
-        size = problem.rigid.length_of_turns(body)
-        scale = np.repeat([1.0, 1.0 / size], 3)
-        loads = [problem.rigid.load(body, at) * scale for at in (fraction, now)]
-        yield _Driven(
-            f"rigid body {body.name!r}",
-            [(contact, -1.0) for contact in contacts],
-            body.position,
-            size,
-            np.eye(6)[free],
-            loads[0],
-            loads[1],
-            rigid=True,
-        )
-
-
-def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, bool, bool]:
+def _pressed(problem: Problem, body: Driven) -> tuple[PressedPoints | None, bool, bool]:
     """Where contact presses on a body, on all ranks; where it touches before anything presses.
 
     Returns:
@@ -301,7 +220,7 @@ def _pressed(problem: Problem, body: _Driven) -> tuple[PressedPoints | None, boo
     return kept, touched, opened
 
 
-def _pressed_by_load(body: _Driven, points: PressedPoints) -> PressedPoints | None:
+def _pressed_by_load(body: Driven, points: PressedPoints) -> PressedPoints | None:
     """The points with the forces that the loads press with; None where these do not say it."""
     total = points.force @ points.normal
     pushed, sizes = float(np.linalg.norm(total)), float(points.force.sum())
@@ -313,7 +232,7 @@ def _pressed_by_load(body: _Driven, points: PressedPoints) -> PressedPoints | No
     return replace(points, force=points.force * (pressed / sizes))
 
 
-def _pressed_on(body: _Driven, points: PressedPoints) -> PressedPoints:
+def _pressed_on(body: Driven, points: PressedPoints) -> PressedPoints:
     """The points with larger forces where the loads come to press more along these, all in all.
 
     That they press less is not taken for granted where normals differ: what is held at most is.
@@ -347,7 +266,7 @@ def _resistance(friction: Friction, axes: Floats, normal: Floats) -> Floats:
     return found
 
 
-def _line(body: _Driven, points: PressedPoints, found: Limit, when: str) -> str:
+def _line(body: Driven, points: PressedPoints, found: Limit, when: str) -> str:
     """What the loads come to, and what friction holds, along the motion that it holds least."""
     shift, turn = np.split(found.motion, 2)
     pressed, share = float(points.force.sum()), ""
@@ -371,7 +290,7 @@ def _line(body: _Driven, points: PressedPoints, found: Limit, when: str) -> str:
     )
 
 
-def _slipping(body: _Driven) -> str:
+def _slipping(body: Driven) -> str:
     """How many points slip in the last state."""
     told = []
     for contact, _ in body.contacts:

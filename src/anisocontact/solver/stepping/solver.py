@@ -15,7 +15,7 @@ from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
-from anisocontact.solver.stepping.attempts import GRAVE, Attempts, Outcome
+from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
@@ -351,8 +351,7 @@ class Solver:
         outcome = self.place.lost or outcome
         increment, culprits = self.place.pace.increment, outcome.culprits
         found = self._overloads(step)
-        grave = any(culprit.kind in GRAVE for culprit in culprits)
-        reason = reason_of(outcome.result.reason, grave, found)
+        reason = reason_of(outcome.result.reason, outcome.grave, found)
         if outcome.result.reason not in reason:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])
