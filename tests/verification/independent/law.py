@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from scipy.linalg import polar
 from scipy.optimize import brentq
 from tests.verification.independent.elements import Elements, Pressure
-from tests.verification.independent.patch import Patch, Place
+from tests.verification.independent.patch import Patch, Place, cross
 
 Floats = npt.NDArray[np.float64]
 OPEN, STICK, SLIP = 0, 1, 2
@@ -25,16 +26,17 @@ OPEN, STICK, SLIP = 0, 1, 2
 def about(axis: Floats, angle: float, v: Floats) -> Floats:
     """v turned about a unit vector by an angle [Rodrigues]."""
     c, s = np.cos(angle), np.sin(angle)
-    return np.asarray(c * v + s * np.cross(axis, v) + (1.0 - c) * (axis @ v) * axis)
+    return np.asarray(c * v + s * cross(axis, v) + (1.0 - c) * (axis @ v) * axis)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Marks:
     """Two axes at angles to the part in the tangent plane of a vector in space (58)."""
 
     vector: Floats
     angles: tuple[float, float]
 
+    @lru_cache(maxsize=1000)  # noqa: B019  (three pairs of axes, which all tests share)
     def at(self, place: Place) -> Floats:
         """The unit axes, (2, 3)."""
         flat = self.vector - self.vector @ place.normal * place.normal
@@ -336,9 +338,10 @@ class Law:
         return 0.5 * x @ k @ x + 0.5 * f @ stretch, dt * stretch @ e.a @ f
 
 
+@lru_cache(maxsize=1000)
 def _between(there: Place, here: Place) -> tuple[Floats, float]:
     """Axis and angle of the least rotation that takes one normal to the other."""
-    axis = np.cross(there.normal, here.normal)
+    axis = cross(there.normal, here.normal)
     sine = float(np.linalg.norm(axis))
     angle = float(np.arctan2(sine, there.normal @ here.normal))
     return (axis / sine, angle) if sine > 0.0 else (here.tangents[0], 0.0)

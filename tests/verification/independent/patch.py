@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +33,13 @@ def bases(knots: Floats, degree: int, u: float) -> Floats:
     return np.stack([value[degree, :n], first[degree, :n], second[degree, :n]])
 
 
-@dataclass(frozen=True)
+def cross(a: Floats, b: Floats) -> Floats:
+    """a x b of two vectors, (3,)."""
+    (a1, a2, a3), (b1, b2, b3) = a.tolist(), b.tolist()
+    return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])
+
+
+@dataclass(frozen=True, eq=False)
 class Place:
     """The patch at a point.
 
@@ -51,7 +57,7 @@ class Place:
     normal_rates: Floats
     second: Floats
 
-    @property
+    @cached_property
     def dual(self) -> Floats:
         """rho^i, (2, 3), from rho^i . rho_j = delta_ij."""
         return np.asarray(np.linalg.pinv(self.tangents).T)
@@ -69,7 +75,7 @@ class Place:
     def frame(self, angle: float) -> Floats:
         """Orthonormal t_1, t_2 of the tangent plane, (2, 3); t_1 at an angle to rho_1."""
         e = self.tangents[0] / np.linalg.norm(self.tangents[0])
-        f = np.cross(self.normal, e)
+        f = cross(self.normal, e)
         c, s = np.cos(angle), np.sin(angle)
         return np.array([c * e + s * f, c * f - s * e])
 
@@ -120,9 +126,9 @@ class Patch:
         r11 = (h[2, 0] - 2.0 * w[1, 0] * r1 - w[2, 0] * x) / w[0, 0]
         r12 = (h[1, 1] - w[1, 0] * r2 - w[0, 1] * r1 - w[1, 1] * x) / w[0, 0]
         r22 = (h[0, 2] - 2.0 * w[0, 1] * r2 - w[0, 2] * x) / w[0, 0]
-        area = np.cross(r1, r2)
+        area = cross(r1, r2)
         normal = area / np.linalg.norm(area)
-        turned = [np.cross(r11, r2) + np.cross(r1, r12), np.cross(r12, r2) + np.cross(r1, r22)]
+        turned = [cross(r11, r2) + cross(r1, r12), cross(r12, r2) + cross(r1, r22)]
         rates = [(v - v @ normal * normal) / np.linalg.norm(area) for v in turned]
         second = np.array([[r11, r12], [r12, r22]])
         return Place(x, np.array([r1, r2]), normal, np.array(rates), second)
