@@ -45,11 +45,29 @@ def test_what_petsc_refuses_late_is_one_line(
 
 
 @pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
-def test_a_solver_that_never_asks_for_balance_is_refused(fe: Any, strategy: str) -> None:
-    """One linear solution, whose result PETSc calls converged whatever forces are left."""
-    said = "^options.snes_type: 'ksponly' given, which never asks whether forces are in balance$"
-    with pytest.raises(InputError, match=said):
-        warned(fe, strategy, {"snes_type": "ksponly"})
+@pytest.mark.parametrize(
+    ("method", "why"),
+    [
+        ("ksponly", "never asks whether forces are in balance"),
+        ("fas", "needs coarser problems, and there are none"),
+    ],
+)
+def test_methods_that_do_not_fit_are_refused(fe: Any, strategy: str, method: str, why: str) -> None:
+    """One linear solution, whose result PETSc calls converged whatever forces are left; full
+    approximation storage, for which there is one level."""
+    with pytest.raises(InputError, match=f"^options.snes_type: '{method}' given, which {why}$"):
+        warned(fe, strategy, {"snes_type": method})
+
+
+@pytest.mark.parametrize("method", ["newtontr", "newtontrdc"])
+def test_trust_regions_have_no_line_search(method: str) -> None:
+    """Requirement: corrections in full, asked for and not, leave a method alone that has no line
+    search; to give it back what it never had ended the process."""
+    problem = script({"snes_type": method})
+    for full_steps in (True, False):
+        x = problem.new_vector()
+        assert problem.newton.solve(x, full_steps).reason == ""
+        assert np.allclose(x.array_r[2::3], 0.01, rtol=0.0, atol=1e-9)  # moved as a whole
 
 
 def test_a_factorisation_of_symmetric_matrices_is_refused(fe: Any) -> None:

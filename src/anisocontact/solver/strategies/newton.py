@@ -34,6 +34,11 @@ DEFAULTS: dict[str, OptionValue] = {
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
 }
+#: Methods of PETSc that do not fit, and why.
+_UNFIT = {
+    PETSc.SNES.Type.KSPONLY: "never asks whether forces are in balance",
+    PETSc.SNES.Type.FAS: "needs coarser problems, and there are none",
+}
 #: Residual over the forces at work at which an increment is accepted.
 TOLERANCE = 1e-8
 MAX_ITERATIONS = 25
@@ -144,7 +149,7 @@ class Newton:
         on_iteration: Called with the number of the iteration and the residual.
 
     Raises:
-        InputError: `snes_type` is one that takes any state for a solution.
+        InputError: `snes_type` is one that takes any state for a solution, or has no problem to solve.
 
     Example:
         A block that is held below and pushed from above; its equations are linear.
@@ -188,8 +193,8 @@ class Newton:
             self.snes.setFromOptions()
             self.snes.getKSP().setFromOptions()
             self.snes.getKSP().getPC().setFromOptions()
-        if self.snes.getType() == PETSc.SNES.Type.KSPONLY:
-            text = f"{self.snes.getType()!r} given, which never asks whether forces are in balance"
+        if why := _UNFIT.get(self.snes.getType()):
+            text = f"{self.snes.getType()!r} given, which {why}"
             raise InputError(text, field="options.snes_type")
         self.snes.setConvergenceTest(self._converged)
         self.snes.setLineSearchPreCheck(self._damp)
@@ -253,7 +258,8 @@ class Newton:
         """Take full steps, or the line search of the options."""
         search = self.snes.getLineSearch()
         kind = PETSc.SNESLineSearch.Type.BASIC if full_steps else self._line_search
-        if search.getType() == kind:
+        # trust regions have none, and PETSc reads what is no type as a text
+        if self._line_search is None or search.getType() == kind:
             return
         search.setType(kind)
         if not full_steps:
