@@ -13,13 +13,14 @@ import pytest
 
 from anisocontact.base.compiler import FAST, machine_key
 
-_fenicsx = pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+_forms = pytest.importorskip("anisocontact.base.compiled_forms", exc_type=ImportError)
+ufl = pytest.importorskip("ufl")
 FormMatrix = pytest.importorskip("anisocontact.base.form_matrix", exc_type=ImportError).FormMatrix
 
 ANSWER = "JIT compilation timed out, probably due to x. Try cleaning cache (e.g. remove {}) or so."
 
 
-@pytest.mark.parametrize(("age", "waits"), [(2.0 * _fenicsx.ABANDONED, 1), (1.0, 3)])
+@pytest.mark.parametrize(("age", "waits"), [(2.0 * _forms.ABANDONED, 1), (1.0, 3)])
 def test_marks_of_the_dead_are_removed_and_the_living_waited_for(tmp_path, monkeypatch, age, waits):
     mark = tmp_path / "libffcx_forms_1.c"
     mark.touch()
@@ -32,19 +33,19 @@ def test_marks_of_the_dead_are_removed_and_the_living_waited_for(tmp_path, monke
             return "compiled"
         raise TimeoutError(ANSWER.format(mark))
 
-    monkeypatch.setattr(_fenicsx.fem, "form", form)
-    assert _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF) == "compiled"
+    monkeypatch.setattr(_forms.fem, "form", form)
+    assert _forms.compiled("form", _forms.MPI.COMM_SELF) == "compiled"
     assert len(asked) == waits + 1
-    assert mark.exists() == (age < _fenicsx.ABANDONED)
+    assert mark.exists() == (age < _forms.ABANDONED)
 
 
 def test_other_failures_stay_failures(monkeypatch):
     def form(_, jit_options):
         raise RuntimeError("no compiler")
 
-    monkeypatch.setattr(_fenicsx.fem, "form", form)
+    monkeypatch.setattr(_forms.fem, "form", form)
     with pytest.raises(RuntimeError, match="no compiler"):
-        _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF)
+        _forms.compiled("form", _forms.MPI.COMM_SELF)
 
 
 def test_a_compiler_without_the_fast_arguments_compiles_with_those_of_dolfinx(monkeypatch):
@@ -56,8 +57,8 @@ def test_a_compiler_without_the_fast_arguments_compiles_with_those_of_dolfinx(mo
             raise OSError("unrecognised argument")
         return what
 
-    monkeypatch.setattr(_fenicsx.fem, "form", form)
-    assert _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF) == "form"
+    monkeypatch.setattr(_forms.fem, "form", form)
+    assert _forms.compiled("form", _forms.MPI.COMM_SELF) == "form"
     fast, plain = asked
     assert fast["cffi_extra_compile_args"] == list(FAST)
     assert fast["cache_dir"] == plain["cache_dir"] / machine_key()
@@ -65,9 +66,9 @@ def test_a_compiler_without_the_fast_arguments_compiles_with_those_of_dolfinx(mo
 
 def test_who_has_set_arguments_for_dolfinx_has_chosen(monkeypatch):
     given = {"cffi_extra_compile_args": ["-O1"], "cache_dir": "here"}
-    monkeypatch.setattr(_fenicsx.dolfinx.jit, "get_options", lambda: given)
-    monkeypatch.setattr(_fenicsx.fem, "form", lambda _, jit_options: jit_options)
-    assert _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF) == given
+    monkeypatch.setattr(_forms.dolfinx.jit, "get_options", lambda: given)
+    monkeypatch.setattr(_forms.fem, "form", lambda _, jit_options: jit_options)
+    assert _forms.compiled("form", _forms.MPI.COMM_SELF) == given
 
 
 def _hyperelastic():
@@ -76,31 +77,31 @@ def _hyperelastic():
     from anisocontact.mesh import BoxSpec, build_box
 
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
-    u = _fenicsx.fem.Function(model.space)
+    u = _forms.fem.Function(model.space)
     u.x.array[:] = 0.05 * np.random.default_rng(3).standard_normal(len(u.x.array))
     rubber = make_material("neo-hookean", E=1.0, nu=0.3)
-    v, du = (f(model.space) for f in (_fenicsx.ufl.TestFunction, _fenicsx.ufl.TrialFunction))
-    energy = sum(density for density, _ in rubber.energy(u)) * _fenicsx.ufl.dx(degree=2)
-    force = _fenicsx.ufl.derivative(energy, u, v)
-    return u, force, _fenicsx.ufl.derivative(force, u, du)
+    v, du = (f(model.space) for f in (ufl.TestFunction, ufl.TrialFunction))
+    energy = sum(density for density, _ in rubber.energy(u)) * ufl.dx(degree=2)
+    force = ufl.derivative(energy, u, v)
+    return u, force, ufl.derivative(force, u, du)
 
 
 def test_fast_forms_are_those_of_the_default_arguments_and_keep_what_is_no_number():
     """Sums in another order: a few roundings; what is no number reaches every node of its cells."""
     u, force, tangent = _hyperelastic()
-    plain = _fenicsx.fem.assemble_vector(_fenicsx.fem.form(force)).array
-    fast_form = _fenicsx.compiled(force, u.function_space.mesh.comm)
-    fast = _fenicsx.fem.assemble_vector(fast_form).array
+    plain = _forms.fem.assemble_vector(_forms.fem.form(force)).array
+    fast_form = _forms.compiled(force, u.function_space.mesh.comm)
+    fast = _forms.fem.assemble_vector(fast_form).array
     assert np.abs(fast - plain).max() <= 64 * np.finfo(float).eps * np.abs(plain).max()
     matrices = [
-        FormMatrix(_fenicsx.compiled(tangent, u.function_space.mesh.comm)).matrix.getValuesCSR()[2],
-        _fenicsx.fem.assemble_matrix(_fenicsx.fem.form(tangent)).to_scipy().tocsr(),
+        FormMatrix(_forms.compiled(tangent, u.function_space.mesh.comm)).matrix.getValuesCSR()[2],
+        _forms.fem.assemble_matrix(_forms.fem.form(tangent)).to_scipy().tocsr(),
     ]
     difference = np.sort(matrices[0]) - np.sort(matrices[1].data)
     assert np.abs(difference).max() <= 64 * np.finfo(float).eps * np.abs(matrices[0]).max()
     u.x.array[0] = np.nan
-    plain = _fenicsx.fem.assemble_vector(_fenicsx.fem.form(force)).array
-    fast = _fenicsx.fem.assemble_vector(fast_form).array
+    plain = _forms.fem.assemble_vector(_forms.fem.form(force)).array
+    fast = _forms.fem.assemble_vector(fast_form).array
     assert np.isnan(plain).any() and np.array_equal(np.isnan(fast), np.isnan(plain))
 
 
@@ -153,5 +154,5 @@ def test_a_run_after_one_that_was_killed_while_it_compiled(tmp_path, case_text):
         if path.suffix != ".c":
             shutil.rmtree(path) if path.is_dir() else path.unlink()
     for mark in marks:
-        os.utime(mark, (time.time() - 2.0 * _fenicsx.ABANDONED,) * 2)
+        os.utime(mark, (time.time() - 2.0 * _forms.ABANDONED,) * 2)
     subprocess.run(check, env=environment, check=True, capture_output=True)

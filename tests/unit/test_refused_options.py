@@ -5,6 +5,10 @@ Many options are read when something is first solved: kinds of factors, threshol
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -120,3 +124,18 @@ def test_states_out_of_balance_are_told(fe: Any, option: str) -> None:
     lines = warned(fe, "direct", {option: 0.99 if option == "snes_rtol" else 1e3})
     assert sum("of the forces at work are out of balance" in line for line in lines) == 1
     assert warned(fe, "direct", {"snes_rtol": 1e-4}) == []
+
+
+def test_options_that_petsc_cannot_read_are_no_error_of_the_program(tmp_path: Path) -> None:
+    """Requirement: PETSc reads its environment as it is loaded; a file that is not there is said
+    in the last line, as what the machine lacks."""
+    case = Path(__file__).with_name("small_block.toml")
+    command = [sys.executable, "-m", "anisocontact", "check", str(case)]
+    options = {"PETSC_OPTIONS": f"-options_file {tmp_path}/none"}
+    done = subprocess.run(
+        command, env=os.environ | options, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 3
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith("error: PETSc cannot be loaded (error code ")
+    assert "PETSC_OPTIONS" in last

@@ -7,16 +7,13 @@ be loaded before them.
 
 from __future__ import annotations
 
-import contextlib
-import re
-import time
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
+from anisocontact.base.errors import MachineError
 
 try:
     from mpi4py import MPI  # isort: skip
@@ -43,8 +40,11 @@ except ImportError as missing:
         f"or fenics-dolfinx 0.11 from conda-forge ({missing})",
         name="dolfinx",
     ) from missing
-
-from anisocontact.base.compiler import FAST, lack_of_compiler, machine_key
+except RuntimeError as refused:  # PETSc's own: it reads options as it is loaded
+    raise MachineError(
+        f"PETSc cannot be loaded ({refused})",
+        "what it says above is about PETSC_OPTIONS or a file .petscrc",
+    ) from refused
 
 __all__ = [
     "MPI",
@@ -55,11 +55,8 @@ __all__ = [
     "assemble_force",
     "assemble_into",
     "basix",
-    "body_shares",
     "cell_nodes",
     "cell_permutation",
-    "compiled",
-    "compiled_expression",
     "corner_weights",
     "create_force",
     "create_mesh",
@@ -90,89 +87,6 @@ PETSc: Any = _PETSc
 type Mat = Any
 type Vec = Any
 type SNES = Any
-
-
-#: Seconds after which nobody is taken to compile a form any more.
-ABANDONED = 60.0
-_WAITED = "JIT compilation timed out"
-_MODULE = re.compile(r"\(e\.g\. remove (.+?\.c)\)")
-
-
-def compiled(form: Any, comm: MPI.Comm) -> Any:
-    """A form as machine code: `fem.form`, also where a process was killed while it compiled.
-
-    Args:
-        form: UFL form.
-        comm: Communicator of its mesh.
-
-    Raises:
-        MachineError: It cannot be compiled on this machine.
-    """
-    return _from_cache(lambda options: fem.form(form, jit_options=options), comm)
-
-
-def compiled_expression(expression: Any, points: Floats, comm: MPI.Comm) -> Any:
-    """An expression at points of each cell as machine code: `fem.Expression`, as `compiled`."""
-    return _from_cache(
-        lambda options: fem.Expression(expression, points, jit_options=options), comm
-    )
-
-
-def _jit_options() -> list[dict[str, Any]]:
-    """Ways to compile, the fastest code first: a compiler may not take its arguments.
-
-    Who has set arguments for DOLFINx has chosen.
-    """
-    given = dolfinx.jit.get_options()
-    if given["cffi_extra_compile_args"] != _JIT_DEFAULTS["cffi_extra_compile_args"][0]:
-        return [given]
-    own = {
-        "cffi_extra_compile_args": list(FAST),
-        "cache_dir": Path(given["cache_dir"], machine_key()),
-    }
-    return [given | own, given]
-
-
-_JIT_DEFAULTS = dolfinx.jit.DOLFINX_DEFAULT_JIT_OPTIONS
-
-
-def _from_cache(compile_: Callable[[dict[str, Any]], Any], comm: MPI.Comm) -> Any:
-    """What FFCx compiles, or has compiled before.
-
-    It marks a form that is being compiled by a file in its cache and gives up after ten seconds
-    of waiting for whoever wrote it. A slow compilation is waited for, what a dead one has left is
-    removed.
-    """
-    options, *others = _jit_options()
-    while True:
-        try:
-            return compile_(options)
-        except (TimeoutError, RuntimeError) as error:
-            if _WAITED in str(error):
-                _wait(error, comm)
-            elif others:
-                options, *others = others
-            else:
-                raise _not_compiled(error) from error
-        except Exception as error:
-            if not others:
-                raise _not_compiled(error) from error
-            options, *others = others
-
-
-def _wait(error: Exception, comm: MPI.Comm) -> None:
-    """Remove the mark that a form waits for if whoever wrote it is dead."""
-    if comm.rank == 0 and (found := _MODULE.search(str(error))):
-        mark = Path(found[1])
-        with contextlib.suppress(FileNotFoundError):
-            if time.time() - mark.stat().st_mtime > ABANDONED:
-                mark.unlink()
-    comm.barrier()
-
-
-def _not_compiled(error: Exception) -> Exception:
-    """What the machine lacks, or the error itself."""
-    return lack_of_compiler(Path(dolfinx.jit.get_options()["cache_dir"])) or error
 
 
 def create_mesh(
@@ -329,19 +243,6 @@ def vector_space(mesh: Any, degree: int) -> Any:
 def scalar_element(space: Any) -> Any:
     """Basix element of one component of a vector space."""
     return space.element.basix_element
-
-
-def body_shares(space: Any, cells: Locals, weight: Any = 1.0) -> Floats:
-    """Integral of the basis function of each local node over cells, (nodes,), length^3.
-
-    Args:
-        space: Vector Lagrange space.
-        cells: The cells.
-        weight: What the basis is multiplied with, UFL: the length across a mesh of two dimensions.
-    """
-    dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=[(1, np.sort(cells))])
-    form = compiled(weight * ufl.TestFunction(space)[0] * dx(1), space.mesh.comm)
-    return np.array(fem.assemble_vector(form).array[::3])
 
 
 def corner_weights(space: Any) -> tuple[Ints, Floats]:

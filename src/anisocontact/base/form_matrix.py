@@ -23,7 +23,8 @@ class FormMatrix:
         matrix: Matrix at the coefficients of now; its pattern stays.
 
     Example:
-        >>> from anisocontact.base.fenicsx import compiled, ufl
+        >>> from anisocontact.base.compiled_forms import compiled
+        >>> from anisocontact.base.fenicsx import ufl
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
         >>> u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
+from anisocontact.base.compiled_forms import compiled_expression
+from anisocontact.base.fenicsx import basix, fem, ufl
 from anisocontact.mesh import Idealisation, Model
 
 #: In front of the names of internal variables among arrays that are kept.

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import compiled, fem, ufl
+from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.mesh import Model
 
 

@@ -8,7 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, fem, ufl
+from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.fenicsx import Mat, Vec, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals

@@ -9,16 +9,9 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.compiled_forms import compiled
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import (
-    Mat,
-    Vec,
-    assemble_force,
-    compiled,
-    create_force,
-    fem,
-    ufl,
-)
+from anisocontact.base.fenicsx import Mat, Vec, assemble_force, create_force, fem, ufl
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals

@@ -26,16 +26,8 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import (
-    Mat,
-    Vec,
-    assemble_into,
-    basix,
-    compiled,
-    create_stiffness,
-    fem,
-    ufl,
-)
+from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.fenicsx import Mat, Vec, assemble_into, basix, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.volume import volume_of

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
+from anisocontact.base.compiled_forms import compiled_expression
+from anisocontact.base.fenicsx import dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
 from anisocontact.bulk.cell_energy import volumes
 from anisocontact.contact import Contact

@@ -149,7 +149,7 @@ class Newton:
         on_iteration: Called with the number of the iteration and the residual.
 
     Raises:
-        InputError: `snes_type` is one that takes any state for a solution, or has no problem to solve.
+        InputError: `snes_type` is one that takes any state for a solution, or needs others.
 
     Example:
         A block that is held below and pushed from above; its equations are linear.

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.compiled_forms import compiled
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import (
     Mat,
     Vec,
     assemble_force,
-    compiled,
     create_force,
     prescribe,
     prescribed_rows,

@@ -8,7 +8,8 @@ from typing import override
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import body_shares
+from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
@@ -114,8 +115,12 @@ def node_shares(model: Model, name: str, field: str) -> Floats:
 
 
 def _volume_shares(model: Model, body: str, field: str) -> Floats:
+    """Integral of the basis function of each local node over a body, length^3."""
+    cells = np.sort(model.cells(body, field))
+    dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=[(1, cells)])
     weight = model.idealisation.weight(model.mesh)
-    return body_shares(model.space, model.cells(body, field), weight)
+    form = compiled(weight * ufl.TestFunction(model.space)[0] * dx(1), model.mesh.comm)
+    return np.array(fem.assemble_vector(form).array[::3])
 
 
 # Kind of a dead load, a field of `Step` -> shares of the nodes.
