@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Unpack
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.typed import typed
+from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.defaults import WithoutPenalty, exact
 from anisocontact.contact.making import (
     DeprecatedArguments,
@@ -78,6 +80,7 @@ class Contact(Pass):
         nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
+        goes_on: Whether it meets what goes on beyond cut faces.
         facet_of_point: Number of each point's facet in the group it lies on, (n,).
 
     Raises:
@@ -132,12 +135,26 @@ class Contact(Pass):
         options = Options(
             degree, current_area, augmentation, adjust, reach, self_contact, apart, mortar
         ).decided(model, slave, master if isinstance(master, str) else None)
+        self._made_of = model, master, law, options
         parts = parts_of(model, slave, master, law, options)
         super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
-        self.physical_adhesion = True
+        self.physical_adhesion, self.goes_on = True, False
         self.facet_of_point = self.slave_points.facet
+
+    def go_on_beyond(self, seams: Sequence[Seam]) -> None:
+        """Meet what goes on beyond the cut faces of a sector, before the first step.
+
+        Slave nodes on two cut faces are one node then, which the leading one stands for.
+
+        Args:
+            seams: Cut faces of slave and master, all with one turn, to either side.
+        """
+        model, master, law, options = self._made_of
+        parts = parts_of(model, self.slave, master, law, options, seams)
+        Pass.__init__(self, model.unknowns, self.slave, self.name, *parts, **options.of_pass)
+        self.facet_of_point, self.goes_on = self.slave_points.facet, True
 
     @property
     def meshed(self) -> bool:

@@ -20,8 +20,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_overlap import Number, Overlap
-from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
-from anisocontact.contact.slave_nodes import Patches
+from anisocontact.contact.slave_edges import line_rule, line_shapes
+from anisocontact.contact.slave_nodes import Patches, transformed
 
 #: Ends of the parts of an edge by the number of its nodes, and their coordinates.
 _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 1.0]])}
@@ -52,7 +52,7 @@ class _Edges:
         now: Positions of the nodes in the plane, (nodes, 2), length.
         reference: The same in the reference configuration, where areas are those there.
         across: Length across the plane at x = 0, and its change with x.
-        transform: As of `SlaveEdges`.
+        transform: Matrix by which shape functions become those that multipliers are dual to.
     """
 
     slave: Locals
@@ -298,16 +298,16 @@ def line_weights(
     hand_over: bool,
 ) -> LineNodes:
     """As of `mortar_weights`."""
-    slave, master, sweep = sides.slave, sides.master, sides.slave.sweep
+    slave, master, sweep = around.mesh, sides.master, sides.master.sweep
     assert sweep is not None
     reference = None if current_area else sides.reference[:, :2]
     across = float(sweep.ideal.offset[2]), float(sweep.ideal.turn[2, 0])
-    own = SlaveEdges(slave, sides.reference)
+    transform = transformed(slave.topology, np.eye(slave.nodes.shape[1]))
     below = sweep.edges(master.nodes)
-    edges = _Edges(own.nodes, below, now[:, :2], reference, across, own.transform)
+    edges = _Edges(slave.nodes, below, now[:, :2], reference, across, transform)
     found = edge_weights(edges, pairs.slave, pairs.master)
     if hand_over:
-        found = found.handed_over(_WHOLE[edges.slave.shape[1]] @ own.transform)
+        found = found.handed_over(_WHOLE[edges.slave.shape[1]] @ transform)
     n, patch = around.nodes.shape
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     f, i = around.facets, around.local

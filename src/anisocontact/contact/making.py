@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
@@ -13,9 +13,11 @@ from anisocontact.base.array_types import Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
+from anisocontact.contact.beyond_cuts import BeyondCuts, Seam
 from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.facet_master import FacetMaster
-from anisocontact.contact.facet_mesh import facet_mesh
+from anisocontact.contact.facet_mesh import facet_mesh, node_positions
+from anisocontact.contact.images import Images
 from anisocontact.contact.master import Master
 from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.penalty import facet_size
@@ -126,8 +128,9 @@ def parts_of(
     master: str | SurfaceMaster | None,
     law: ContactLaw | None,
     options: Options,
+    seams: Sequence[Seam] = (),
 ) -> Parts:
-    """The parts of a contact, see `Contact`."""
+    """The parts of a contact, see `Contact` and `Contact.go_on_beyond`."""
     if options.mortar and options.degree is not None:
         raise InputError("given, but slave nodes have no quadrature of a degree", "degree")
     if not isinstance(master, str):
@@ -135,7 +138,7 @@ def parts_of(
     laws = _laws(law)
     if options.self_contact:
         options = _folded(model, slave, master, options)
-    return _on_facets(model, slave, master, laws, options)
+    return _on_facets(model, slave, master, laws, options, seams)
 
 
 def _on_surface(
@@ -172,6 +175,7 @@ def _slave_nodes(
     of_edges: Callable[[SlaveEdges], NodesOfFacets],
     towards: Towards | None = None,
     order: int | None = None,
+    beyond: BeyondCuts | None = None,
 ) -> SlaveNodes:
     """Slave nodes of a mortar contact; of a body of order 1 in a space of order 2 its corners.
 
@@ -185,13 +189,22 @@ def _slave_nodes(
         text = f"mortar given on {comm.size} processes: in two dimensions it needs a single one"
         raise InputError(text, "pass")
     mesh = facet_mesh(model.space, facets, sweep, order)
-    whole = around_own_nodes(model.space, mesh, facet_keys(model.mesh, np.sort(facets)))
+    keys = facet_keys(model.mesh, np.sort(facets))
+    whole = around_own_nodes(model.space, mesh, keys, beyond)
     x = whole.far.everywhere(model.positions)
+    if beyond is not None:
+        x = beyond.images.positions(x)
     if sweep is None:
         found = nodes_of_facets(whole, x, comm, towards)
     else:
-        found = of_edges(SlaveEdges(mesh, x, towards))
+        found = of_edges(SlaveEdges(whole.mesh, x, towards, whole.nodes))
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
+
+
+def _beyond(model: Model, seams: Sequence[Seam]) -> BeyondCuts:
+    """What goes on beyond cut faces, in the plane swept out of its edges as well."""
+    images, count = Sweep.of(model), len(node_positions(model.space))
+    return BeyondCuts(images or Images(count, np.eye(3)[None], np.zeros((1, 3))), seams)
 
 
 def _order(model: Model, facets: Locals) -> int:
@@ -259,6 +272,7 @@ def _on_facets(
     master: str,
     law: ContactLaw,
     options: Options,
+    seams: Sequence[Seam],
 ) -> Parts:
     """Points and what they meet, which is facets.
 
@@ -268,15 +282,20 @@ def _on_facets(
         master: Facet group of the master.
         law: Laws.
         options: As of `Contact`.
+        seams: As of `Contact.go_on_beyond`.
     """
     _check_pair(model)
     check_sides(model, slave, master, options.apart)
     current, nodes = options.current_area is not False, None
+    beyond = _beyond(model, seams) if seams else None
     if options.mortar:
-        towards = (towards_itself if options.self_contact else towards_facets)(model, master)
+        if options.self_contact:
+            towards = towards_itself(model, master)
+        else:
+            towards = towards_facets(model, master, beyond)
         facets = model.facets(slave)
         order = None if options.self_contact else _order(model, facets)
-        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order)
+        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order, beyond)
     sides = make_sides(
         model,
         (slave, master),
@@ -285,6 +304,7 @@ def _on_facets(
         options.apart,
         current,
         nodes,
+        beyond,
     )
     if nodes is not None:
         size = facet_size(model, master)

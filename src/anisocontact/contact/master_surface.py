@@ -9,10 +9,12 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import facet_keys
+from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
+from anisocontact.contact.images import Images
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.contact.sweep import ROWS, Sweep
+from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.split import Route, Split, arranged
 
 
@@ -29,6 +31,7 @@ class MasterSurface:
         facets: Local facets on the boundary.
         sweep: Of a mesh in the plane, on one process: "nodes" are then images of its nodes.
         beside: Nodes of the whole mesh that each process has beside, before those it gathers.
+        beyond: What goes on beyond cut faces, on one process: images as well.
 
     Attributes:
         own: Facets of the group on this process, with its local nodes.
@@ -41,15 +44,21 @@ class MasterSurface:
     """
 
     def __init__(
-        self, space: Any, facets: Locals, sweep: Sweep | None = None, beside: Ints = NONE
+        self,
+        space: Any,
+        facets: Locals,
+        sweep: Sweep | None = None,
+        beside: Ints = NONE,
+        beyond: BeyondCuts | None = None,
     ) -> None:
         self._space, self._beside = space, beside
         self.own = own = facet_mesh(space, facets, sweep)
         self.comm = comm = space.mesh.comm
         self.distributed = bool(comm.size > 1)
-        self._sweep, x = sweep, node_positions(space)
+        self._images: Images | None = sweep if beyond is None else beyond.images
+        x = node_positions(space)
         #: Positions of the local nodes in the reference configuration, of all images of them.
-        self.start = self.reference = x if sweep is None else sweep.positions(x)
+        self.start = self.reference = x if self._images is None else self._images.positions(x)
         keys = facet_keys(space.mesh, np.sort(facets))
         self._ranks = _Ranks(comm, keys)
         self._own_numbers = self._ranks.find(keys)
@@ -62,10 +71,11 @@ class MasterSurface:
             self._rows = Split(comm, len(self._table[0]))
             self.gather(NONE)
         else:
-            self.numbers, self._far = np.arange(len(own.nodes)), FarNodes(space, NONE)
             order = np.argsort(keys)
             nodes = np.ascontiguousarray(own.nodes[order])
-            self.facets = FacetMesh(own.topology, nodes, own.flip[order], sweep)
+            all_of_it = FacetMesh(own.topology, nodes, own.flip[order], sweep)
+            self.facets = all_of_it if beyond is None else beyond.whole(all_of_it)
+            self.numbers, self._far = np.arange(len(self.facets.nodes)), FarNodes(space, NONE)
 
     def gather(self, numbers: Ints) -> None:
         """Have these facets instead of those before; collective.
@@ -157,14 +167,14 @@ class MasterSurface:
         known, first = np.unique(self._row_and_node(self.facets.nodes)[1], return_index=True)
         facet, place = np.divmod(first[np.searchsorted(known, of_mesh)], self._width)
         names = np.full_like(nodes, -1)
-        names[there] = self._images * (self._width * self.numbers[facet] + place) + row
+        names[there] = self._of_node * (self._width * self.numbers[facet] + place) + row
         return names
 
     def of_names(self, names: Locals) -> Locals:
         """Nodes of `names`, whose facets this process has."""
         there = names >= 0
         nodes = np.full_like(names, -1)
-        place, row = np.divmod(names[there], self._images)
+        place, row = np.divmod(names[there], self._of_node)
         facet = self.renumbered(self.facets_of_names(names[there]))
         _, of_mesh = self._row_and_node(self.facets.nodes[facet, place % self._width])
         nodes[there] = row * node_count(self._space) + of_mesh
@@ -172,7 +182,7 @@ class MasterSurface:
 
     def facets_of_names(self, names: Locals) -> Locals:
         """Numbers in the whole group of the facets of `names`, -1 for none."""
-        return names // (self._width * self._images)
+        return names // (self._width * self._of_node)
 
     def _row_and_node(self, nodes: Locals) -> tuple[Locals, Locals]:
         """Row of images that nodes are in, and the nodes of the mesh that they are images of."""
@@ -180,9 +190,9 @@ class MasterSurface:
         return (nodes - of_mesh) // node_count(self._space), of_mesh
 
     @property
-    def _images(self) -> int:
+    def _of_node(self) -> int:
         """How many images a node of the mesh has, itself among them."""
-        return 1 if self._sweep is None else len(ROWS)
+        return 1 if self._images is None else self._images.rows
 
     @property
     def _width(self) -> int:
@@ -198,7 +208,7 @@ class MasterSurface:
 
     def zeros(self, out: Floats) -> Floats:
         """Where to add forces, numbered as `reference`; on one process `out` itself."""
-        own = self.distributed or self._sweep is not None
+        own = self.distributed or self._images is not None
         return np.zeros(self.reference.shape) if own else out
 
     def hand_back(self, forces: Floats, out: Floats) -> None:
@@ -208,8 +218,8 @@ class MasterSurface:
             forces: What `zeros` gave, with forces of this process, (nodes, 3).
             out: Forces of the local nodes, whose sum over the processes counts, (local nodes, 3).
         """
-        if self._sweep is not None:
-            self._sweep.fold(forces, out)
+        if self._images is not None:
+            self._images.fold(forces, out)
         self._far.hand_back(forces, out)
 
     def coupled(self, nodes: Locals) -> Locals:
@@ -221,22 +231,22 @@ class MasterSurface:
         Returns:
             The same for local nodes, the number of local nodes plus the global number for others.
         """
-        if self._sweep is not None:
-            return self._sweep.named(nodes)
+        if self._images is not None:
+            return self._images.named(nodes)
         return self._far.coupled(nodes)
 
     def moved(self, u: Floats) -> Floats:
         """Displacements of the nodes as they are numbered here, from those of the mesh."""
-        return u if self._sweep is None else self._sweep.moved(u)
+        return u if self._images is None else self._images.moved(u)
 
     def local_names(self, nodes: Locals) -> Locals:
         """Nodes of which some are images as those of the mesh."""
-        return nodes if self._sweep is None else self._sweep.named(nodes)
+        return nodes if self._images is None else self._images.named(nodes)
 
     def couplings(self, found: Couplings) -> Couplings:
         """Blocks with the names of `coupled`."""
-        if self._sweep is not None:
-            return self._sweep.folded(found)
+        if self._images is not None:
+            return self._images.folded(found)
         rows, columns, blocks = found
         return self.coupled(rows), self.coupled(columns), blocks
 

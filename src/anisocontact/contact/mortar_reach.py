@@ -33,26 +33,28 @@ def mortar_reachable(
     if not (len(nodes) and len(sides.master.nodes)):
         return [(named(own), named(nodes))]
     x = points.positions(now)
-    radius = np.linalg.norm(now[nodes] - x[:, None], axis=2).max()
+    sweep = sides.master.sweep
+    near = points.nodes if sweep is None else sweep.in_plane(points.nodes)
+    radius = np.linalg.norm(now[near] - x[:, None], axis=2).max()
     limit = sides.reach + float(np.linalg.norm(way, axis=2).max())
     places = (x + way).reshape(-1, 3)
     which = np.tile(np.arange(len(x)), len(way))
     excluded = None if sides.excluded is None else sides.excluded.take(which)
     hit = sides.surface.project(places, max_distance=limit, exclude=excluded)
     found = np.flatnonzero(hit.status <= FACET_STATUS.index("off"))
-    near = sides.surface.within(hit.position[found], margin + radius)
-    point = np.repeat(found, np.diff(near.offsets)) % len(x)
+    below = sides.surface.within(hit.position[found], margin + radius)
+    point = np.repeat(found, np.diff(below.offsets)) % len(x)
     count = len(sides.master.nodes)
-    point, facet = np.divmod(np.unique(point * count + near.facets), count)
-    below = _incidence(point, sides.gathered.local_names(sides.master.nodes)[facet], len(x))
-    first, second = below.nonzero()
-    both = (below.T @ below).nonzero()
+    point, facet = np.divmod(np.unique(point * count + below.facets), count)
+    both = _incidence(point, sides.gathered.local_names(sides.master.nodes)[facet], len(x))
+    first, second = both.nonzero()
+    masters = (both.T @ both).nonzero()
     own_masters = second[:, None].astype(np.int32)
     pairs = [
         (own, nodes),
         (own[first], own_masters),
         (own_masters, nodes[first]),
-        (both[0][:, None].astype(np.int32), both[1][:, None].astype(np.int32)),
+        (masters[0][:, None].astype(np.int32), masters[1][:, None].astype(np.int32)),
     ]
     return [(named(rows), named(columns)) for rows, columns in pairs]
 

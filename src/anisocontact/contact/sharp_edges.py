@@ -20,6 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import facet_quadrature, inward
 from anisocontact.mesh import Model
@@ -113,9 +114,17 @@ def beside_edges(around: Around, keys: Ints, comm: Any) -> Flags:
     return np.isin(keys, np.concatenate(comm.allgather(own)))
 
 
-def towards_facets(model: Model, group: str) -> Towards:
-    """Normals of the facets of a group; collective, and it has those of all processes."""
+def towards_facets(model: Model, group: str, beyond: BeyondCuts | None = None) -> Towards:
+    """Normals of the facets of a group; collective, and it has those of all processes.
+
+    Args:
+        model: Mesh with the group.
+        group: Facet group "body.group".
+        beyond: What goes on beyond cut faces.
+    """
     places, normals = _middles(model, group)
+    if beyond is not None:
+        places, normals = beyond.all_around(places, normals)
 
     def towards(x: Floats, *_: object) -> Floats:
         from scipy.spatial import cKDTree  # slow to import, and smooth slaves do without

@@ -13,6 +13,7 @@ import numpy as np
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
+from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetRule,
@@ -272,6 +273,7 @@ def make_sides(
     apart: float | None,
     current_area: bool,
     nodes: SlaveNodes | None = None,
+    beyond: BeyondCuts | None = None,
 ) -> Sides:
     """Both sides in the reference configuration.
 
@@ -283,11 +285,12 @@ def make_sides(
         apart: See `Contact`.
         current_area: See `Contact`.
         nodes: Slave nodes, where the law is not evaluated at points of the facets.
+        beyond: What goes on beyond cut faces.
     """
     slave, master = (model.facets(group) for group in groups)
     comm, sweep = model.mesh.comm, Sweep.of(model)
     beside = NONE if nodes is None else nodes.far.numbers
-    gathered = MasterSurface(model.space, master, sweep, beside)
+    gathered = MasterSurface(model.space, master, sweep, beside, beyond)
     reference = gathered.start
     own = facet_mesh(model.space, slave, sweep)
     rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)

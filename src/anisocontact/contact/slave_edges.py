@@ -60,11 +60,13 @@ class SlaveEdges:
         facets: Facets that are swept out of them.
         reference: Positions of the nodes of the mesh in the reference configuration, (nodes, 3).
         towards: As of `nodes_of_facets`.
+        chosen: As of `patches`.
     """
 
     facets: FacetMesh
     reference: Floats
     towards: Towards | None = None
+    chosen: Ints | Locals | None = None
 
     @property
     def sweep(self) -> Sweep:
@@ -78,11 +80,6 @@ class SlaveEdges:
         return self.sweep.edges(self.facets.nodes)
 
     @property
-    def transform(self) -> Floats:
-        """Matrix by which shape functions become those that multipliers are dual to, (k, k)."""
-        return transformed(self._topology, np.eye(self.nodes.shape[1]))
-
-    @property
     def _topology(self) -> str:
         count = self.nodes.shape[1]
         return ROUND if count == 3 and self.sweep.ideal.turn.any() else LINES[count]
@@ -90,7 +87,7 @@ class SlaveEdges:
     def in_plane(self) -> NodesOfFacets:
         """The edges around each node, the nodes as points, and the mean length of an edge."""
         edges = self.nodes
-        around = patches(FacetMesh(self._topology, edges, self.facets.flip))
+        around = patches(FacetMesh(self._topology, edges, self.facets.flip), self.chosen)
         counts = counting(around, self._normals, self.reference, self.towards)
         around = replace(around, counts=counts)
         n, k = around.nodes.shape
@@ -118,7 +115,9 @@ class SlaveEdges:
             turn=self.sweep.ideal.turn,
             spread=spread[:, None],
         )
-        return around, points, float(length.sum() / max(len(edges), 1))
+        # every edge is around each of its nodes once
+        count = len(around.facets) / edges.shape[1]
+        return around, points, float(length.sum() / max(count, 1.0))
 
     def in_space(self) -> NodesOfFacets:
         """The same with tangents across the plane by images of the nodes."""
@@ -144,7 +143,7 @@ class SlaveEdges:
         shape, slope = line_shapes(points, edges.shape[1])
         tangents = slope @ self.reference[edges]
         extent = weights * np.linalg.norm(tangents, axis=2)
-        dual = shape @ self.transform
+        dual = transformed(self._topology, shape)
         return extent @ dual, np.einsum("mq,qa,qb->mab", extent, dual, shape)
 
     @property

@@ -67,8 +67,6 @@ class Patches:
             itself to r, then the others, and itself again to k.
         support: Values at the first nodes whose combination is the slave point, (n, r).
         counts: Whether a facet counts for the averaged normal of a node, 1 or 0, see `counting`.
-        pieces: Pieces of the facets with straight edges, as numbers of slave nodes, after which
-            come those of `WholeFacets.others`, (m, corners).
         memory: Of tangents, from one evaluation to the next.
     """
 
@@ -79,21 +77,21 @@ class Patches:
     nodes: Locals
     support: Floats
     counts: Floats
-    pieces: Locals
     memory: _core.MortarMemory = field(default_factory=_core.MortarMemory)
 
 
-def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
+def patches(mesh: FacetMesh, chosen: Ints | Locals | None = None) -> Patches:
     """The facets around the nodes of a surface, nodes in ascending order.
 
     Args:
         mesh: The facets.
-        owned: Nodes with lower numbers are looked at; all if None.
+        chosen: Nodes that are looked at; all if None.
     """
     k = mesh.nodes.shape[1]
     flat = mesh.nodes.reshape(-1)
     order = np.argsort(flat, kind="stable")
-    order = order[: None if owned is None else np.searchsorted(flat, owned, sorter=order)]
+    if chosen is not None:
+        order = order[np.isin(flat[order], chosen)]
     nodes, first = np.unique(flat[order], return_index=True)
     offsets = np.append(first, len(order)).astype(np.int64)
     facets, local = np.divmod(order, k)
@@ -116,7 +114,6 @@ def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
         padded.astype(np.int32).reshape(len(nodes), width),
         values,
         np.ones(len(facets)),
-        _pieces(mesh),
     )
 
 
@@ -187,7 +184,7 @@ def nodes_of_facets(
         comm: Communicator of the mesh.
         towards: Normals of the master, which tell the faces beside a sharp edge apart.
     """
-    around = patches(whole.mesh, whole.far.owned if comm.size > 1 else None)
+    around = patches(whole.mesh, whole.nodes)
     normals = outward_normals(whole.mesh, reference)
     around = replace(around, counts=counting(around, normals, reference, towards))
     points = nodal_quadrature(around, reference)
@@ -255,11 +252,20 @@ def _axes(normal: Floats) -> Floats:
     return np.stack([first, np.cross(n, first)], axis=1)
 
 
-def _pieces(mesh: FacetMesh) -> Locals:
-    """Pieces of the facets with straight edges, as numbers of their nodes in ascending order."""
-    pieces = mesh.nodes[:, _PIECES[mesh.topology]]
-    pieces = np.where(mesh.flip[:, None, None], pieces[..., ::-1], pieces)
-    numbers = np.searchsorted(np.unique(mesh.nodes), pieces)
+def _pieces(mesh: FacetMesh, whole: WholeFacets) -> Locals:
+    """Pieces of the facets with straight edges, (m, corners).
+
+    Args:
+        mesh: The facets; in the plane the edges.
+        whole: Which of them are in the mesh; corners have numbers of its nodes, after which come
+            those of its others.
+    """
+    nodes, flip = mesh.nodes[: whole.drawn], mesh.flip[: whole.drawn]
+    pieces = nodes[:, _PIECES[mesh.topology]]
+    pieces = np.where(flip[:, None, None], pieces[..., ::-1], pieces)
+    named = np.concatenate([whole.nodes, whole.beside])
+    order = np.argsort(named)
+    numbers = order[np.searchsorted(named, pieces, sorter=order)]
     return numbers.reshape(-1, pieces.shape[2]).astype(np.int32)
 
 
@@ -292,18 +298,19 @@ class SlaveNodes(SlavePoints):
     ) -> None:
         self.around, quadrature, size = nodes
         self.far, self.keys, self._others = whole.far, whole.keys, whole.others
+        self._whole = whole.mesh
         flip = np.zeros(len(quadrature.nodes), dtype=bool)
         super().__init__(quadrature, flip, current_area=current_area, comm=comm)
         self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
         self.size = size
-        # images of nodes have the numbers after them, see `Sweep`
-        near = reference[quadrature.nodes % max(len(reference), 1)]
-        away = near - quadrature.reference[:, None]
+        sweep, near = whole.mesh.sweep, quadrature.nodes
+        near = near if sweep is None else sweep.in_plane(near)
+        away = reference[near] - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
         if (quadrature.rows or 1) > 1:  # nodes of edges of a tri6, see `EDGE_SHARE`
             self.beside = float(np.linalg.norm(away[:, 0], axis=1).max(initial=0.0))
         self.across = beside_edges(self.around, whole.keys, comm)
-        pieces = self.around.pieces
+        self._pieces = pieces = _pieces(self.around.mesh, whole)
         self.polygons = pieces[(pieces < len(self.facet)).all(axis=1)]
 
     @override
@@ -316,7 +323,7 @@ class SlaveNodes(SlavePoints):
 
     @override
     def searched(self, slave: FacetMesh) -> FacetMesh:
-        return self.around.mesh if slave.sweep is None else slave
+        return self._whole
 
     @override
     def unseen(self, near: Near) -> FacetSets:
@@ -336,7 +343,7 @@ class SlaveNodes(SlavePoints):
         nearer it is the smaller its pressure. It counts with `EDGE` times its pressure over the
         largest of its neighbours, at most wholly.
         """
-        corners = self.around.pieces
+        corners = self._pieces
         touches = self._around(now.response.status != 0)
         pressure = np.where(touches, self._around(now.response.pressure), 0.0)
         beside, at_edge = np.zeros(len(touches)), np.zeros(len(touches), dtype=bool)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,23 @@ class Turning:
         apart = float(self.distance(np.asarray(point, dtype=float)[None])[0])
         size = max(1.0, float(np.abs(self.point).max()))
         return self.along(axis) and apart <= SAME_LINE * size
+
+    @property
+    def repeats(self) -> int:
+        """How many of these turns make a whole one."""
+        return round(2.0 * math.pi / abs(self.angle))
+
+    def times(self, count: int) -> Turning:
+        """So many of these turns, back if negative."""
+        return replace(self, angle=count * self.angle)
+
+    def same_as(self, other: Turning) -> bool:
+        """Whether another turn brings all points to the same places."""
+        size = max(1.0, float(np.abs(self.point).max()))
+        origin = np.zeros((1, 3))
+        apart = np.abs(self.of(origin) - other.of(origin)).max()
+        turned = np.abs(self.matrix - other.matrix).max()
+        return bool(turned <= SAME_LINE and apart <= SAME_LINE * size)
 
     def of(self, x: Floats) -> Floats:
         """Where points go, (n, 3), length."""

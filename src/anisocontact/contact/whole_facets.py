@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Ints
+from anisocontact.base.array_types import Ints, Locals
+from anisocontact.contact.beyond_cuts import BeyondCuts, Led
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.mesh.split import Route, Split
@@ -20,28 +21,36 @@ class WholeFacets:
     Attributes:
         mesh: The facets; nodes that are not local have numbers after these.
         far: Those nodes.
-        others: Nodes of the facets that other processes own, in ascending order of their numbers.
+        others: Nodes of the facets that other processes own, or that follow others on cut faces.
         keys: Numbers of `facet_keys` of the facets.
+        nodes: The nodes of the surface that this process owns, ascending, but those that follow.
+        beside: Numbers on the facets of `others`.
+        drawn: How many of the facets, the first, are in the mesh; the others are turned there.
     """
 
     mesh: FacetMesh
     far: FarNodes
-    others: FarNodes
+    others: FarNodes | Led
     keys: Ints
+    nodes: Ints | Locals
+    beside: Ints | Locals
+    drawn: int
 
 
-def around_own_nodes(space: Any, mesh: FacetMesh, keys: Ints) -> WholeFacets:
+def around_own_nodes(
+    space: Any, mesh: FacetMesh, keys: Ints, beyond: BeyondCuts | None = None
+) -> WholeFacets:
     """The facets around nodes; on one process those that are given; collective.
 
     Args:
         space: Vector Lagrange space of the displacement.
         mesh: Facets of the surface on this process, with its local nodes.
         keys: Their numbers of `facet_keys`, whose order is that of the facets, (m,).
+        beyond: What goes on beyond cut faces, on one process.
     """
     comm, index_map = space.mesh.comm, space.dofmap.index_map
     if comm.size == 1:
-        none = FarNodes(space, NONE)
-        return WholeFacets(mesh, none, none, keys)
+        return _on_one_process(space, mesh, keys, beyond)
     nodes = index_map.local_to_global(mesh.nodes.reshape(-1)).reshape(mesh.nodes.shape)
     owner = Split(comm, index_map.size_local).owner(nodes)
     facet, to = np.divmod(np.unique(np.arange(len(nodes))[:, None] * comm.size + owner), comm.size)
@@ -53,6 +62,22 @@ def around_own_nodes(space: Any, mesh: FacetMesh, keys: Ints) -> WholeFacets:
     far = np.unique(nodes[local < 0])
     named = np.where(local < 0, node_count(space) + np.searchsorted(far, nodes), local)
     known, first = np.unique(named, return_index=True)
-    others = nodes.reshape(-1)[first[known >= index_map.size_local]]
+    own = known < index_map.size_local
+    others = FarNodes(space, nodes.reshape(-1)[first[~own]])
     found = FacetMesh(mesh.topology, named.astype(np.int32), flip[order])
-    return WholeFacets(found, FarNodes(space, far), FarNodes(space, others), keys[order])
+    return WholeFacets(
+        found, FarNodes(space, far), others, keys[order], known[own], known[~own], len(order)
+    )
+
+
+def _on_one_process(
+    space: Any, mesh: FacetMesh, keys: Ints, beyond: BeyondCuts | None
+) -> WholeFacets:
+    none, drawn = FarNodes(space, NONE), len(mesh.nodes)
+    nodes = np.unique(mesh.nodes if mesh.sweep is None else mesh.sweep.edges(mesh.nodes))
+    if beyond is None:
+        return WholeFacets(mesh, none, none, keys, nodes, NONE, drawn)
+    leading, following = beyond.followed(mesh)
+    found, of = beyond.beside(mesh)
+    own = np.setdiff1d(nodes, following)
+    return WholeFacets(found, none, Led(leading), keys[of], own, following, drawn)

@@ -9,22 +9,23 @@ from anisocontact.contact import Contact
 from anisocontact.solver.system.problem import Problem
 
 #: Share of its weight that a slave node has to lose; what is left carries as much more.
-LOST = 0.05
+LOST = 0.01
 #: Share from which on the master covers a node.
 WHOLE = 0.99
 #: What is said of it.
 PAST = (
     "slave nodes at the cut faces of a sector have turned past the end of the master by up to "
     "{:.0%} of what they stand for, which nothing carries here: pressures there are wrong, and "
-    "where the surface is curved forces with them; take the whole instead of a sector"
+    "where the surface is curved forces with them; give both bodies a sector with the same turn "
+    "and the run one process, or take the whole instead of a sector"
 )
 
 
 class CutFaceWatch:
     """Says how much of slave nodes on cut faces has lost its meshed master since the start.
 
-    Nodes count that the master covered then. Both faces are strained alike, so that what one of
-    them loses is measured on the other.
+    Nodes count that the master covered then, of contacts that end there. Both faces are strained
+    alike, so that what one of them loses is measured on the other.
 
     Args:
         problem: The problem at the start of the run.
@@ -35,8 +36,8 @@ class CutFaceWatch:
         on_cuts = np.zeros(0, dtype=np.int64) if ties is None else ties.on_cuts()
         self._watched: list[tuple[Contact, Flags]] = []
         for one in problem.contacts if problem.comm.allreduce(len(on_cuts)) else ():
-            if one.meshed and one.slave_points.at_nodes:
-                # images of nodes of a mesh in the plane have the numbers after them, see `Sweep`
+            if one.meshed and one.slave_points.at_nodes and not one.goes_on:
+                # images of nodes have the numbers after them, see `Images`
                 own = one.slave_points.nodes[:, 0] % (nodes.size_local + nodes.num_ghosts)
                 self._watched.append((one, np.isin(own, on_cuts) & (one.covered() > WHOLE)))
 

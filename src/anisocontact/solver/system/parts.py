@@ -30,6 +30,7 @@ from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.middles import constrain_middles, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
+from anisocontact.solver.terms.sector_contacts import go_on_beyond_cuts
 from anisocontact.solver.terms.stabilisation import Stabilisation
 from anisocontact.solver.terms.supports import Supports
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
@@ -97,6 +98,8 @@ def make_parts(
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
+    if tied is not None:
+        go_on_beyond_cuts(contacts, tied)
     guides = _guides(model, symmetry, like, tied, faces)
     constraints = Constraints(like, constrain_middles(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])

@@ -13,8 +13,6 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
 from anisocontact.bulk import LinearBulk, Material
-from anisocontact.bulk.locking import locking_bodies
-from anisocontact.bulk.stability import unstable_rubbers
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.accepted import AcceptedState
@@ -36,7 +34,7 @@ from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
-from anisocontact.solver.terms.step import Step, check_courses
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
 
 
@@ -217,10 +215,7 @@ class Problem(ReportedSystem):
         Raises:
             InputError: A step asks for what is not there, or cannot be.
         """
-        ties = self.constraints.ties
-        doubtful = check_courses(steps) + ([] if ties is None else ties.left_out())
-        doubtful += unstable_rubbers(self.materials) + locking_bodies(self.model, self.materials)
-        check_steps(self._parts, steps)
+        doubtful = check_steps(self._parts, steps)
         for step in steps:
             self.attached.check(step)
         self.rigid.check(steps)

@@ -8,13 +8,16 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
+from anisocontact.bulk.locking import locking_bodies
+from anisocontact.bulk.stability import unstable_rubbers
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
-from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.sector_contacts import halved_nodes
+from anisocontact.solver.terms.step import AXES, Step, check_courses
 from anisocontact.solver.terms.supports import Supports
 
 
@@ -79,8 +82,11 @@ def _rehearsed(
         yield step, supports, guides, loads
 
 
-def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
+def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
     """Go through the supports and loads of all steps without solving.
+
+    Returns:
+        What is doubtful, a line each.
 
     Raises:
         InputError: See `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
@@ -104,6 +110,15 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
             ends = supports.unknowns, supports.end
             ties.check_prescribed(*ends, guides.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
+    return _doubtful(parts, steps)
+
+
+def _doubtful(parts: Parts, steps: Sequence[Step]) -> list[str]:
+    """What is asked for that is doubtful, a line each; collective."""
+    ties, materials = parts.assembly.constraints.ties, parts.materials
+    of_ties = [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties)]
+    bodies = unstable_rubbers(materials) + locking_bodies(parts.model, materials)
+    return check_courses(steps) + of_ties + bodies
 
 
 def _cut_faces(parts: Parts) -> list[SupportedFrame]:

@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
+from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.tie_weights import TieConditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
@@ -115,6 +116,12 @@ class CutFaces:
         near = apart.argmin(axis=1)
         met = np.where(apart.min(axis=1) <= SAME_PLACE * size, master[near], -1)
         return cls(name, turning, slave, met, (slave, master), on)
+
+    @property
+    def seam(self) -> Seam:
+        """Nodes off the axis that are one of the whole."""
+        met = (self.master >= 0) & ~np.isin(self.slave, self.on_axis)
+        return Seam(self.turning, self.master[met], self.slave[met])
 
     def check_whole(self, found: TieConditions) -> None:
         """Refuse a face of which some of the other has no place: not the sector that was said."""

@@ -188,6 +188,16 @@ class TiedFaces:
             found.append(slave)
         return np.unique(np.concatenate(found))
 
+    def cuts_of(self, body: str) -> list[CutFaces]:
+        """Cut faces of a body."""
+        cuts = self._cuts.items()
+        return [cut for name, cut in cuts if self._model.body_of(self._pairs[name].slave) == body]
+
+    def sides_of(self, cut: CutFaces) -> tuple[Ints, Ints]:
+        """Nodes this rank owns on slave and master of cut faces, off the axis."""
+        slave, master = (np.setdiff1d(side, cut.on_axis) for side in cut.sides)
+        return self._own(slave), self._own(master)
+
     def _own(self, members: Ints) -> Ints:
         """Local numbers of nodes of the groups that this rank owns."""
         own = members[self._groups.owned()[members]]
