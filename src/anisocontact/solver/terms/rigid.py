@@ -19,14 +19,10 @@ from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import SingularError, Term
+from anisocontact.solver.terms.unheld import unheld
 
 #: Share of the stiffness of a body's contacts and springs below which a motion counts as free.
 _NOTHING = 1e-12
-_SLIDES = "what touches it slides; load it less, give it a spring, or hold it there"
-_APART = (
-    "it touches nothing; bring it into contact by a prescribed motion first, give it a spring, or "
-    "hold it there"
-)
 _NAMES = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
@@ -400,11 +396,8 @@ class RigidBodies(Term):
         turn = np.abs(body.trial.turn - body.accepted.turn)
         if not float(np.linalg.norm(turn)) >= np.pi:
             return ""
-        return self._unsupported(body, [_NAMES[3 + int(np.argmax(turn))]])
-
-    def _unsupported(self, body: RigidBody, named: Sequence[str]) -> str:
-        why = _SLIDES if self._touched(body) else _APART
-        return f"nothing holds the rigid body {body.name!r} {', '.join(named)}: {why}"
+        named = _NAMES[3 + int(np.argmax(turn))]
+        return unheld(body, [named], self.contacts[body], self._comm)
 
     def _check_support(self, body: RigidBody, stiff: Floats) -> None:
         if told := self._whirls(body):
@@ -418,8 +411,4 @@ class RigidBodies(Term):
         if len(loose):
             part = (loose**2).sum(axis=0)
             named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
-            raise SingularError(self._unsupported(body, named))
-
-    def _touched(self, body: RigidBody) -> bool:
-        local = sum(int(np.count_nonzero(c.current.response.status)) for c in self.contacts[body])
-        return bool(self._comm.allreduce(local) > 0)
+            raise SingularError(unheld(body, named, self.contacts[body], self._comm))
