@@ -8,8 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
-from anisocontact.bulk.locking import locking_bodies
-from anisocontact.bulk.stability import unstable_rubbers
+from anisocontact.bulk.doubts import doubtful_materials
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported
 from anisocontact.solver.system.parts import Parts
@@ -117,7 +116,7 @@ def _doubtful(parts: Parts, steps: Sequence[Step]) -> list[str]:
     """What is asked for that is doubtful, a line each; collective."""
     ties, materials = parts.assembly.constraints.ties, parts.materials
     of_ties = [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties)]
-    bodies = unstable_rubbers(materials) + locking_bodies(parts.model, materials)
+    bodies = doubtful_materials(parts.model, materials, parts.bulk)
     return check_courses(steps) + of_ties + bodies
 
 
