@@ -214,3 +214,28 @@ def test_linear_slaves_on_quadratic_masters(cell):
     assert len(made.contacts[0].state) == 9
     assert made.contacts[0].last.pressure == pytest.approx(pressure, rel=1e-7)
     assert last.reactions["two.top"][2] == pytest.approx(-pressure, rel=1e-7)
+
+
+def test_a_slave_of_order_1_in_the_plane():
+    """Two rectangles, order 1 on order 2.
+
+    Requirement: slave nodes are refused in one line where the master is the other body, and against
+    a surface stand for half an edge at the ends and a whole one between them. Source: integrals of
+    the shape functions of order 1. Tolerance: rounding.
+    """
+    from anisocontact.base.errors import InputError
+    from anisocontact.contact import Contact
+    from anisocontact.laws import Friction
+    from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
+    from anisocontact.surfaces import make_surface
+
+    upper = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(2, 1), order=1)
+    lower = make_shape("rectangle", origin=(0, -1), size=(1, 1), cells=(3, 1), order=2)
+    bodies = [Body("upper", upper), Body("lower", lower)]
+    model = build_mesh(bodies, idealisation=PlaneStrain())
+    law = Friction(coefficients=0.1)
+    with pytest.raises(InputError, match="order 1 beside bodies of order 2"):
+        Contact(model, "upper.bottom", "lower.top", law)
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 1, 0))
+    areas = Contact(model, "upper.bottom", plane, law).areas
+    assert sorted(areas.tolist()) == pytest.approx([0.25, 0.25, 0.5], rel=1e-12)

@@ -294,7 +294,10 @@ def _on_facets(
         else:
             towards = towards_facets(model, master, beyond)
         facets = model.facets(slave)
-        order = None if options.self_contact else _order(model, facets)
+        order = model.order if options.self_contact else _order(model, facets)
+        if model.idealisation.dim == 2 and order < model.order:
+            text = "slave nodes of a body of order 1 beside bodies of order 2"
+            raise InputError(f'{text}: in two dimensions take "single", points', "pass")
         nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order, beyond)
     sides = make_sides(
         model,

@@ -24,13 +24,13 @@ ANGLE = 0.5
 ON_AXIS = 1e-12
 #: Rows of images: in the plane, before it and behind it.
 ROWS = np.array([0.0, -1.0, 1.0])
-#: Nodes of a facet by the order of its edge: node of the edge and row.
+#: Nodes of a facet by the number of those of its edge: node of the edge and row.
 _NODES = {
-    1: [(0, 1), (1, 1), (0, 2), (1, 2)],
-    2: [(0, 1), (1, 1), (0, 2), (1, 2), (2, 1), (0, 0), (1, 0), (2, 2), (2, 0)],
+    2: [(0, 1), (1, 1), (0, 2), (1, 2)],
+    3: [(0, 1), (1, 1), (0, 2), (1, 2), (2, 1), (0, 0), (1, 0), (2, 2), (2, 0)],
 }
-#: Nodes of an edge among those of its facet.
-_EDGE = {1: [0, 1], 2: [0, 1, 4]}
+#: Nodes of an edge among those of its facet, by the number of these.
+_EDGE = {4: [0, 1], 9: [0, 1, 4]}
 
 
 class Sweep(Images):
@@ -53,7 +53,6 @@ class Sweep(Images):
         shares = width * ROWS
         maps = np.eye(3) + shares[:, None, None] * ideal.turn
         super().__init__(len(x), maps, shares[:, None] * offset)
-        self._nodes, self._edge = np.array(_NODES[model.order]), _EDGE[model.order]
         self.share = float(0.5 / width)
 
     @classmethod
@@ -63,12 +62,12 @@ class Sweep(Images):
 
     def facets(self, edges: Locals) -> Locals:
         """Nodes of the facets of edges, (m, 4 or 9), from those of the edges, (m, 2 or 3)."""
-        node, row = self._nodes.T
+        node, row = np.array(_NODES[edges.shape[1]]).T
         return np.asarray(edges[:, node] + self.count * row, dtype=np.int32)
 
     def edges(self, facets: Locals) -> Locals:
         """Nodes of the edges, (m, 2 or 3), from those of the facets that `facets` made of them."""
-        return self.in_plane(facets[:, self._edge])
+        return self.in_plane(facets[:, _EDGE[facets.shape[1]]])
 
     def in_plane(self, nodes: Locals) -> Locals:
         """Nodes in the plane, turned as well, of which these are the rows on either side."""
