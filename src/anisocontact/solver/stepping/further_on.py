@@ -3,7 +3,8 @@
 A block in a bowl that is pushed beyond friction slides up its side until it rests there. Along a
 sliding motion by s, loads and normal forces work less than s times what they do at first, by
 `c s^2 / 2`: the body is driven the less the further it slides, and `c s` makes up for what friction
-lacks. Where a plane or a drum goes on as it is, and loads as well, c is zero.
+lacks. Where a plane or a drum goes on as it is, and loads as well, c is zero. It is asked of
+smooth masters: the shape of meshed ones is that of now, with the dent that moves with the body.
 """
 
 from __future__ import annotations
@@ -44,11 +45,14 @@ class Slide:
     grown: float
 
     def rests(self, lacking: float) -> bool:
-        """Whether what friction lacks is made up for before it has slid by its size; collective.
+        """Whether what friction lacks is made up for within `FAR` of its size; collective.
 
         Args:
             lacking: Work of loads and normal forces on the motion beyond that of friction.
         """
+        # the dent that a body makes in another one moves with it, and holds nothing back
+        if any(contact.meshed for contact in self.contacts):
+            return False
         twist = np.zeros((4, 4))
         twist[:3, :3] = np.cross(self.motion[3:] / self.size, np.eye(3)).T
         twist[:3, 3] = self.motion[:3]

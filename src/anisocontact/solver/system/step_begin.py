@@ -88,10 +88,10 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
         What is doubtful, a line each.
 
     Raises:
-        InputError: See `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
+        InputError: See `check_courses`, `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
             `check_lost_loads`.
     """
-    turned = False
+    turned, doubtful = False, check_courses(steps)
     for step, supports, guides, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)
         _check_motions(parts, step)
@@ -109,15 +109,15 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
             ends = supports.unknowns, supports.end
             ties.check_prescribed(*ends, guides.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
-    return _doubtful(parts, steps)
+    return doubtful + _doubtful(parts)
 
 
-def _doubtful(parts: Parts, steps: Sequence[Step]) -> list[str]:
-    """What is asked for that is doubtful, a line each; collective."""
+def _doubtful(parts: Parts) -> list[str]:
+    """What is doubtful whatever the steps ask for, a line each; collective."""
     ties, materials = parts.assembly.constraints.ties, parts.materials
     of_ties = [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties)]
     bodies = doubtful_materials(parts.model, materials, parts.bulk)
-    return check_courses(steps) + of_ties + bodies
+    return of_ties + bodies
 
 
 def _cut_faces(parts: Parts) -> list[SupportedFrame]:
