@@ -258,7 +258,7 @@ def test_a_correction_after_one_without_gain_is_more_precise() -> None:
     problem.balance = replace(problem.balance, force_scale=1.0)
     solver = LaggedNewton(problem, "lagged_", {}, lambda *_: None, lambda _: None, {})
     solver._forcing.begin()
-    asked = [solver._forcing.rtol(problem, size) for size in (1.0, 0.6, 0.1)]
+    asked = [solver._forcing.rtol(problem, size) for size in (0.25, 0.2, 0.05)]
     solver.close()
     assert asked == [ROUGH, CAREFUL, ROUGH]
 
@@ -266,7 +266,7 @@ def test_a_correction_after_one_without_gain_is_more_precise() -> None:
 def test_a_correction_from_far_off_leaves_less_than_the_forces_at_work() -> None:
     """Forces of an iterate that is far off are no measure of what a correction may leave.
 
-    Requirement: 1e-3 of the smallest forces at work in the increment, of residuals that are 1e5
+    Requirement: 3e-4 of the smallest forces at work in the increment, of residuals that are 1e5
     times these, and 1e-13 of the residual at least, which rounding allows. Tolerance: rounding.
     """
     forcing, problem = Forcing(1e-8, ROUGH, CAREFUL), _pair()
@@ -275,10 +275,10 @@ def test_a_correction_from_far_off_leaves_less_than_the_forces_at_work() -> None
     problem.balance = replace(problem.balance, force_scale=1.0)
     assert forcing.rtol(problem, 1e-1) == ROUGH
     problem.balance = replace(problem.balance, force_scale=1e4)
-    assert forcing.rtol(problem, 1e5) == pytest.approx(1e-8, rel=1e-12)
+    assert forcing.rtol(problem, 1e5) == pytest.approx(3e-9, rel=1e-12)
     assert forcing.rtol(problem, 1e12) == 1e-13
     forcing.begin()
-    assert forcing.rtol(problem, 1e4) == ROUGH
+    assert forcing.rtol(problem, 2e3) == ROUGH
 
 
 def test_a_tube_that_keeps_its_volume_takes_as_many_iterations_as_direct() -> None:

@@ -9,7 +9,7 @@ from anisocontact.solver.strategies.newton import System
 #: Residual of a correction where multipliers follow, over the forces out of balance, and over all.
 _FINE, _FINEST = 1e-5, 1e-13
 #: Forces that a correction may leave, over the smallest ones at work since the increment began.
-_LEFT = 1e-3
+_LEFT = 3e-4
 _TINY = float(np.finfo(np.float64).tiny)
 
 
