@@ -60,3 +60,25 @@ def test_what_holds_a_body_back_as_it_slides(
     way = FAR * SIZE / np.linalg.norm(motion)
     found = [slide.rests(share * abs(stiffness) * way + 1e-9) for share in (0.99, 1.01)]
     assert found == [stiffness > 0.0, False]
+
+
+def test_a_dent_holds_nothing_back() -> None:
+    """A block pressed into another one by 5 % of its height, which then lies in a dent.
+
+    Requirement: the dent moves with the block, so that it does not rest further on, however little
+    friction lacks. Source: the same block further along has the same dent.
+    """
+    below = make_shape("box", origin=(-2, -0.5, -1), size=(4, 1, 1), cells=(8, 1, 2))
+    block = make_shape("box", origin=(-0.5, -0.5, 0), size=(1, 1, 1), cells=(2, 1, 1))
+    model = build_mesh([Body("base", below), Body("block", block)])
+    law = ContactLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
+    contact = Contact(model, "block.bottom", "base.top", law)
+    x, down = model.space.tabulate_dof_coordinates(), np.zeros((len(model.positions), 3))
+    down[(x[:, 2] >= 0.0) & (np.abs(x[:, 0]) <= 0.5), 2] = -0.05
+    down[model.facet_nodes("block.bottom"), 2] -= 1e-2
+    contact.update(down, 1.0)
+    contact.commit()
+    assert contact.last.pressure.max() > 0.0
+    loads = np.zeros((3, 4))
+    loads[:, 3] = 3.0, 0.0, -WEIGHT
+    assert not Slide(ALONG, np.zeros(3), SIZE, loads, [contact], 1.0).rests(1e-9)

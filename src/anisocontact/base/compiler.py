@@ -17,7 +17,7 @@ from anisocontact.base.errors import MachineError
 
 #: Arguments for code of this machine alone whose sums may be in any order, and in which what is not
 #: a number stays none: an iterate far off is judged by that. FFCx writes straight loops: what the
-#: second level of optimisation does beyond vectors takes a third longer and gains nothing.
+#: second level of optimisation does beyond vectors takes a third longer, to no quicker matrix.
 FAST = (
     *("-O1", "-ftree-vectorize", "-march=native"),
     *("-ffast-math", "-fno-finite-math-only", "-g0"),

@@ -31,8 +31,12 @@ def unheld(body: RigidBody, named: Sequence[str], contacts: Sequence[Contact], c
         contacts: Its contacts, at a trial.
         comm: Communicator of the mesh.
     """
-    why = _LEFT if _touch((one.last for one in contacts), comm) else _APART
-    why = _SLIDES if _touch((one.trial for one in contacts), comm) else why
+    if _touch((one.trial for one in contacts), comm):
+        why = _SLIDES
+    elif _touch((one.last for one in contacts), comm):
+        why = _LEFT
+    else:
+        why = _APART
     return f"nothing holds the rigid body {body.name!r} {', '.join(named)}: {why}"
 
 
