@@ -43,8 +43,10 @@ class Forcing:
             size: Norm of the right-hand side, force.
         """
         self._least = min(self._least, system.balance.force_scale or np.inf)
-        most = _LEFT * self._least / max(size, _TINY)
-        return min(self._share(system, size), max(most, _FINEST))
+        share = self._share(system, size)
+        if size <= self._least:
+            return share
+        return min(share, max(_LEFT * self._least / size, _FINEST))
 
     def _share(self, system: System, size: float) -> float:
         """What the residual of now allows for."""
