@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.compiled_forms import compiled_expression
@@ -57,6 +58,7 @@ class BodyGrid:
         ]
         continuous = fem.functionspace(model.mesh, ("Lagrange", model.order, (len(_SYMMETRIC),)))
         self._mean = fem.Function(continuous)
+        self._to_nodes = self._scatter()
         ones: Floats = np.ones(self._stress.x.array.shape)
         self._share = 1.0 / self._summed(ones).clip(1.0)
         cells, kinds, self._points = dolfinx.plot.vtk_mesh(model.space)
@@ -118,17 +120,21 @@ class BodyGrid:
 
     def _summed(self, at_cells: Floats) -> Floats:
         """Sum over the cells at each node of values at the nodes of each cell."""
-        rows = self._stress.function_space.dofmap.list
-        nodes = self._mean.function_space.dofmap.list
-        topology = self.problem.model.mesh.topology
-        owned = topology.index_map(topology.dim).size_local
-        width = len(_SYMMETRIC)
-        self._mean.x.array[:] = 0.0
-        target = self._mean.x.array.reshape(-1, width)
-        np.add.at(target, nodes[:owned], at_cells.reshape(-1, width)[rows[:owned]])
+        self._mean.x.array[:] = (self._to_nodes @ at_cells.reshape(-1, len(_SYMMETRIC))).ravel()
         self._mean.x.scatter_reverse(dolfinx.la.InsertMode.add)
         self._mean.x.scatter_forward()
         return np.array(self._mean.x.array, dtype=np.float64)
+
+    def _scatter(self) -> scipy.sparse.csr_array:
+        """Ones from the nodes of each cell of this rank to its nodes in the mesh."""
+        of_cells = self._stress.function_space.dofmap
+        of_mesh = self._mean.function_space.dofmap
+        topology = self.problem.model.mesh.topology
+        owned = topology.index_map(topology.dim).size_local
+        places = of_mesh.list[:owned].ravel(), of_cells.list[:owned].ravel()
+        maps = (one.index_map for one in (of_mesh, of_cells))
+        shape = tuple(one.size_local + one.num_ghosts for one in maps)
+        return scipy.sparse.coo_array((np.ones(len(places[0])), places), shape).tocsr()
 
     def _body_numbers(self, count: int) -> Locals:
         numbers = np.zeros(count, dtype=np.int32)
