@@ -58,13 +58,13 @@ def deformable(problem: Problem, fraction: float, now: float) -> Iterator[Driven
             local = np.column_stack([force.T @ arms, force.sum(axis=0)])
             sums.append(problem.comm.allreduce(local) + _leads(problem, body, at))
         problem.loads.set_load_factor(problem.load_factor, problem.dt)
-        sides = [(c, {problem.model.body_of(g) for g in c.groups[1:]}) for c in free.contacts]
+        sides = [body.sides(contact) for contact in free.contacts]
         yield Driven(
             f"body {body.name!r}",
             [
-                (c, 1.0 if problem.model.body_of(c.slave) in body.parts else -1.0)
-                for c, masters in sides
-                if not (masters & set(body.parts) and problem.model.body_of(c.slave) in body.parts)
+                (contact, 1.0 if slave else -1.0)
+                for contact, (slave, *masters) in zip(free.contacts, sides, strict=True)
+                if not (slave and any(masters))
             ],
             body.centre,
             body.size,
@@ -79,7 +79,7 @@ def _leads(problem: Problem, body: ConnectedBody, fraction: float) -> Floats:
     """Loads on rigid bodies that faces of a body follow, as of `Driven.loads`."""
     total = np.zeros((3, 4))
     for rigid, faces in problem.rigid.coupled.items():
-        if any(problem.model.body_of(face.group) in body.parts for face in faces):
+        if any([body.has(problem.model.nodes(face.group), problem.comm) for face in faces]):
             force, moment = np.split(problem.rigid.load(rigid, fraction), 2)
             total += _sums(force, moment, rigid.position - body.centre)
     return total

@@ -196,14 +196,11 @@ def _motions(arms: Floats) -> Floats:
 
 def _watched(one: Contact, groups: Sequence[ConnectedBody]) -> list[_Watched]:
     """The bodies of a slave that are not its master's too; the slave points alone if none is."""
-    slave, *masters = (
-        [bool(one.space.mesh.comm.allreduce(len(np.intersect1d(nodes, g.local)))) for g in groups]
-        for nodes in one.nodes_of_groups
-    )
+    sides = [group.sides(one) for group in groups]
     found = [
         _body(one, group)
-        for i, group in enumerate(groups)
-        if slave[i] and not any(master[i] for master in masters)
+        for group, (slave, *masters) in zip(groups, sides, strict=True)
+        if slave and not any(masters)
     ]
     nodes, places = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     return found or [_Watched(one, None, nodes, places, nodes, places)]

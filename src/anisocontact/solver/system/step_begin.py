@@ -10,6 +10,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.doubts import doubtful_materials
 from anisocontact.contact.far_nodes import with_ghosts
+from anisocontact.mesh.pieces import unjoined_bodies
 from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.terms.free_modes import SupportedFrame
@@ -117,7 +118,10 @@ def _doubtful(parts: Parts) -> list[str]:
     ties, materials = parts.assembly.constraints.ties, parts.materials
     of_ties = [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties)]
     bodies = doubtful_materials(parts.model, materials, parts.bulk)
-    return of_ties + bodies
+    of_contacts = [nodes for contact in parts.contacts for nodes in contact.nodes_of_groups]
+    links = [] if ties is None else ties.links
+    tied = [parts.model.facet_nodes(group) for link in links for group in link]
+    return of_ties + bodies + unjoined_bodies(parts.model, of_contacts + tied)
 
 
 def _cut_faces(parts: Parts) -> list[SupportedFrame]:

@@ -230,10 +230,9 @@ class CoupledFaces:
 
     @property
     def links(self) -> list[tuple[str, str]]:
-        """Pairs of deformable bodies whose faces follow one rigid body."""
-        pairs = ((a, b) for i, a in enumerate(self.faces) for b in self.faces[:i])
-        of = self._model.body_of
-        return [(of(a.group), of(b.group)) for a, b in pairs if a.body is b.body]
+        """Pairs of faces that follow one rigid body, and each with itself."""
+        pairs = ((a, b) for i, a in enumerate(self.faces) for b in self.faces[: i + 1])
+        return [(a.group, b.group) for a, b in pairs if a.body is b.body]
 
     def number(self, bodies: Iterable[RigidBody], scales: Mapping[RigidBody, Floats]) -> None:
         """Take over where the unknowns of the free bodies are and what they are multiplied with."""

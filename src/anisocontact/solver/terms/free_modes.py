@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import Contact
 from anisocontact.mesh import Idealisation, Model
 from anisocontact.mesh.idealisation import SOLID
+from anisocontact.mesh.pieces import piece_of_nodes
 
 #: Share of the largest eigenvalue below which a motion meets no support.
 FREE = 1e-9
@@ -65,6 +66,7 @@ class ConnectedBody:
         size: Root mean square distance of its nodes from the centre, length.
         resisted: Rows over the six motions that are zero where nothing is strained, (r, 6).
         centre: Mean of its nodes, (3,), length.
+        whole: Whether it is all of its bodies, not a piece that shares no node with the rest.
     """
 
     parts: tuple[str, ...]
@@ -76,45 +78,55 @@ class ConnectedBody:
     size: float
     resisted: Floats = field(default_factory=lambda: np.zeros((0, 6)))
     centre: Floats = field(default_factory=lambda: np.zeros(3))
+    whole: bool = True
 
     @property
     def name(self) -> str:
-        """Names of the bodies in one."""
-        return " + ".join(self.parts)
+        """Names of the bodies in one, and where it is if it is a piece of them."""
+        place = ", ".join(f"{v + 0.0:.3g}" for v in self.centre)
+        return " + ".join(self.parts) + ("" if self.whole else f", the piece around ({place})")
+
+    def has(self, nodes: Ints | Locals, comm: Any) -> bool:
+        """Whether one of local nodes is a node of it on any rank; collective."""
+        return bool(comm.allreduce(len(np.intersect1d(nodes, self.local))))
+
+    def sides(self, contact: Contact) -> list[bool]:
+        """Whether it has nodes of the slave of a contact, and of its master; collective."""
+        return [self.has(nodes, contact.space.mesh.comm) for nodes in contact.nodes_of_groups]
 
 
-def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[ConnectedBody]:
-    """All bodies of a model; those that share nodes are one.
+def bodies(model: Model, links: Iterable[Sequence[str]] = ()) -> list[ConnectedBody]:
+    """All bodies of a model, their pieces each; what shares nodes is one. Collective.
 
     Args:
         model: The model.
-        links: Pairs of bodies that count as one beside these.
+        links: Facet groups whose nodes move together beside these, a few names each.
     """
-    space, comm = model.space, model.mesh.comm
-    owned = space.dofmap.index_map.size_local
-    names = list(model.body_names())
-    local, nodes = {}, {}
-    for name in names:
-        found = fem.locate_dofs_topological(space, model.idealisation.dim, model.cells(name))
-        found = found.astype(np.int64)
-        local[name], nodes[name] = found, found[found < owned]
-    pairs = [(names.index(a), names.index(b)) for a, b in links]
-    for i, a in enumerate(names):
-        for j, b in enumerate(names[:i]):
-            if comm.allreduce(len(np.intersect1d(nodes[a], nodes[b]))):
-                pairs.append((i, j))
-    number = connected(len(names), np.array(pairs, dtype=np.int64).reshape(-1, 2))
-    groups = [
-        [n for n, k in zip(names, number, strict=True) if k == one] for one in np.unique(number)
-    ]
-    return [
-        connected_body(space, group, [local[name] for name in group], model.idealisation)
-        for group in groups
-    ]
+    space, comm, ideal = model.space, model.mesh.comm, model.idealisation
+    label = piece_of_nodes(space)
+
+    def pieces(nodes: Ints | Locals) -> Ints:
+        return np.unique(np.concatenate(comm.allgather(np.unique(label[nodes]))))
+
+    of_bodies = {
+        name: pieces(fem.locate_dofs_topological(space, ideal.dim, model.cells(name)))
+        for name in model.body_names()
+    }
+    together = [np.concatenate([pieces(model.nodes(group)) for group in link]) for link in links]
+    pairs = [np.column_stack([one, np.full_like(one, one[0])]) for one in together]
+    count = 1 + max(int(own.max()) for own in of_bodies.values())
+    number = connected(count, np.concatenate([np.zeros((0, 2), dtype=np.int64), *pairs]))
+    found = []
+    for one in range(number.max() + 1):
+        names = [name for name, own in of_bodies.items() if np.any(number[own] == one)]
+        whole = all(np.all(number[of_bodies[name]] == one) for name in names)
+        body = connected_body(space, names, [np.flatnonzero(number[label] == one)], ideal)
+        found.append(replace(body, whole=whole))
+    return found
 
 
 def joined(
-    model: Model, contacts: Sequence[Contact], coupled: Iterable[tuple[str, str]] = ()
+    model: Model, contacts: Sequence[Contact], coupled: Iterable[Sequence[str]] = ()
 ) -> list[ConnectedBody]:
     """Bodies that only supports and springs can hold, those in contact with each other as one.
 
@@ -125,17 +137,12 @@ def joined(
     Args:
         model: Mesh of the bodies.
         contacts: The contacts.
-        coupled: Pairs of bodies that move together.
+        coupled: Facet groups that move together.
     """
-    others: set[str] = set()
-    links = list(coupled)
-    for contact in contacts:
-        on, *against = (model.body_of(group) for group in contact.groups)
-        if against:
-            links.append((on, against[0]))
-        else:
-            others.add(on)
-    return [body for body in bodies(model, links) if not others & set(body.parts)]
+    given = [contact for contact in contacts if len(contact.groups) == 1]
+    links = [contact.groups for contact in contacts if len(contact.groups) > 1]
+    found = bodies(model, [*coupled, *links])
+    return [body for body in found if not any([any(body.sides(one)) for one in given])]
 
 
 def connected_body(

@@ -52,7 +52,7 @@ class Stabilisation(Term):
         attached: Springs and elastic supports; none if left out.
         sprung: Bodies that they act on.
         enabled: Whether bodies may be stabilised; if not they have to touch.
-        coupled: Pairs of bodies that move together.
+        coupled: Facet groups that move together, a few each.
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
@@ -73,7 +73,7 @@ class Stabilisation(Term):
         attached: Attachments | None = None,
         sprung: Iterable[str] = (),
         enabled: bool = True,
-        coupled: Sequence[tuple[str, str]] = (),
+        coupled: Sequence[Sequence[str]] = (),
     ) -> None:
         self.enabled = enabled
         self.energy = self.released = 0.0

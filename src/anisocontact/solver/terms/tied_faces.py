@@ -103,9 +103,8 @@ class TiedFaces:
 
     @property
     def links(self) -> list[tuple[str, str]]:
-        """Pairs of bodies that are tied."""
-        of = self._model.body_of
-        return [(of(pair.slave), of(pair.master)) for pair in self._pairs.values()]
+        """Facet groups that are tied, of a sector its cut faces."""
+        return [(pair.slave, pair.master) for pair in self._pairs.values()]
 
     def frames(self) -> list[SupportedFrame]:
         """Cut faces as nodes that move along and about the axis alone where nothing is strained."""

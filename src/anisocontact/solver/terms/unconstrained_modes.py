@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import MPI, Mat
 from anisocontact.mesh.node_unknowns import NodeUnknowns
+from anisocontact.mesh.pieces import piece_of_nodes
 from anisocontact.solver.terms.free_modes import named
 
 #: Force of a rigid motion over that of moving single nodes, root mean square, that is rounding.
@@ -41,7 +41,7 @@ def parts(space: Any) -> list[MeshPart]:
     comm, index_map = space.mesh.comm, space.dofmap.index_map
     owned = index_map.size_local
     x = np.asarray(space.tabulate_dof_coordinates())
-    label = _labels(space)
+    label = piece_of_nodes(space)
     found = []
     for one in range(comm.allreduce(int(label.max(initial=-1)), MPI.MAX) + 1):
         nodes = np.flatnonzero(label == one)
@@ -87,22 +87,3 @@ def unconstrained_modes(
     values, vectors = np.linalg.eigh(sums)
     loose = vectors.T[values <= NOTHING**2 * count]
     return named(loose) if len(loose) else ""
-
-
-def _labels(space: Any) -> Ints:
-    """Number of the connected part of each local node."""
-    comm, index_map = space.mesh.comm, space.dofmap.index_map
-    cells = np.asarray(space.dofmap.list)
-    count = index_map.size_local + index_map.num_ghosts
-    here = connected(count, cells)
-    first = np.append(0, np.cumsum(comm.allgather(int(here.max(initial=-1)) + 1)))
-    own = here + first[comm.rank]
-    # a ghost and the node it is a copy of are one
-    of_ghosts = (np.asarray(index_map.ghosts, dtype=np.int64), own[index_map.size_local :])
-    low, high = index_map.local_range
-    links = [np.zeros((0, 2), dtype=np.int64)]
-    for nodes, labels in comm.allgather(of_ghosts):
-        mine = (nodes >= low) & (nodes < high)
-        links.append(np.column_stack([own[nodes[mine] - low], labels[mine]]))
-    joined = np.concatenate(comm.allgather(np.concatenate(links)))
-    return np.asarray(connected(int(first[-1]), joined)[own])

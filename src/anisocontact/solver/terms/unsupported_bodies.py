@@ -38,7 +38,7 @@ class UnsupportedBodies:
         scale: Mean diagonal of the stiffness of the bulk, force/length.
         attached: Springs and elastic supports; none if left out.
         sprung: Bodies that they act on.
-        coupled: Pairs of bodies that move together.
+        coupled: Facet groups that move together, a few each.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class UnsupportedBodies:
         scale: float,
         attached: Attachments | None,
         sprung: Iterable[str],
-        coupled: Sequence[tuple[str, str]],
+        coupled: Sequence[Sequence[str]],
     ) -> None:
         self._model, self._contacts, self._sprung = model, list(contacts), set(sprung)
         self._comm, self._least = model.mesh.comm, NOTHING * scale
@@ -145,8 +145,5 @@ class UnsupportedBodies:
         raise InputError(text, f"step {step!r}")
 
     def _of(self, body: ConnectedBody) -> list[Contact]:
-        """Contacts of a body."""
-        return [c for c in self._contacts if set(body.parts) & self._sides(c)]
-
-    def _sides(self, contact: Contact) -> set[str]:
-        return {self._model.body_of(group) for group in contact.groups}
+        """Contacts of a body; collective."""
+        return [one for one in self._contacts if any(body.sides(one))]

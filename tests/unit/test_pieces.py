@@ -1,0 +1,78 @@
+"""Bodies of several pieces that share no nodes: each of them is held, or said not to be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from anisocontact.base.errors import InputError
+from anisocontact.bulk import LinearElastic
+from anisocontact.contact import Contact
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import Body, Model, make_shape
+from anisocontact.mesh.merge import merge
+from anisocontact.mesh.pieces import unjoined_bodies
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.terms.free_modes import bodies
+from anisocontact.surfaces import make_surface
+
+PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+
+
+def _block(gap: float = 0.0) -> Model:
+    """A body that is two cubes on each other, two by two cells each, which share no node."""
+    shapes = [
+        make_shape("box", origin=(0, 0, z), size=(1, 1, 1), cells=(2, 2, 2)) for z in (0, 1 + gap)
+    ]
+    parts = merge([Body(name, shape).arrays() for name, shape in zip("ab", shapes, strict=True)])
+    names = {"bottom": "a.bottom", "low": "a.top", "high": "b.bottom", "top": "b.top"}
+    facets = {f"block.{name}": parts.facets[of] for name, of in names.items()}
+    return Model.from_arrays(
+        replace(parts, bodies={"block": np.arange(len(parts.cells))}, facets=facets)
+    )
+
+
+def _problem(model: Model, slave: str = "block.bottom") -> Problem:
+    laws = NormalLaw(penalty=1e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, slave, Interface(plane, *laws))
+    return Problem(model, {"block": LinearElastic(E=1e3, nu=0.3)}, [contact])
+
+
+def test_pieces_are_bodies_of_their_own() -> None:
+    """A support of the upper one does not hold the lower one, which contact alone can hold."""
+    model = _block()
+    lower, upper = bodies(model)
+    assert [lower.name, upper.name] == [
+        "block, the piece around (0.5, 0.5, 0.5)",
+        "block, the piece around (0.5, 0.5, 1.5)",
+    ]
+    problem = _problem(model)
+    Solver(problem, [PRESS])
+    problem.begin(PRESS)
+    assert [free.body.name for free in problem.stabilisation.loose] == [lower.name]
+
+
+def test_a_piece_that_nothing_holds_is_refused() -> None:
+    """A part of the mesh that no support, contact or tie has to do with has no equilibrium."""
+    said = r"step 'press': body 'block, the piece around \(0.5, 0.5, 0.5\)' is free to move"
+    with pytest.raises(InputError, match=said):
+        Solver(_problem(_block(0.1), "block.high"), [PRESS])
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.1])
+def test_nodes_that_were_not_joined_are_told(gap: float) -> None:
+    """Nine nodes of the upper cube are at the places of others; with a gap none is."""
+    cautions = Solver(_problem(_block(gap)), [PRESS]).cautions
+    found = [line for line in cautions if "2 pieces that share no node" in line]
+    assert len(found) == (gap == 0.0)
+    assert all("9 nodes of one lie on nodes of another" in line for line in found)
+
+
+def test_pieces_that_are_meant_to_touch_are_not_doubtful() -> None:
+    """Nodes of contacts and ties lie on each other by intent."""
+    model = _block()
+    assert not unjoined_bodies(model, [model.facet_nodes("block.low")])
