@@ -12,6 +12,7 @@ from anisocontact.contact.contact import Contact
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.contact.initial import initial_overlap
+from anisocontact.contact.one_pass import TOUCHING
 from anisocontact.contact.sharp_edges import SMOOTH
 
 #: Size of the facets of the slave over those of the master beyond which points between which
@@ -20,6 +21,11 @@ COARSE, MISSED = 3.0, 1.5
 #: Height of arcs over flat facets over an overlap at the start that is worth a word: a press fit of
 #: two rings whose arcs are 1.3 times as high as the overlap carries 15 to 19 % too much.
 FLAT = 0.1
+#: Pressure that closes the gaps between flat facets over the one there is beyond which a word is
+#: due: pressures at the nodes of a finer slave are off by that share.
+UNEVENNESS = 0.5
+#: Distance up to which pressures are averaged for that, over the size of the coarser facets.
+LEVELLED = 2.0
 #: Distance of nodes over the height of arcs up to which meshes of both sides match.
 MATCHING = 0.1
 #: Share of the nodes of the slave that do, from which on they do.
@@ -126,10 +132,12 @@ def uneven(contacts: Sequence[Contact]) -> list[str]:
 
 
 def faceted(contacts: Sequence[Contact]) -> list[str]:
-    """Contacts whose pressures are less than what closes the gaps between their flat facets.
+    """Contacts whose pressures are no larger than what closes the gaps between flat facets.
 
     Where chords of two bodies stand for one round face and do not match, they are apart by the
-    height of their arcs, here more, there less. Collective.
+    height of their arcs, here more, there less. Pressures at points differ from their mean by what
+    closes these gaps, if they are closed at all; where they are not, what touches carries more, so
+    that it is a mean over some facets that is looked at. Collective.
 
     Args:
         contacts: The contacts, in their accepted state.
@@ -140,17 +148,32 @@ def faceted(contacts: Sequence[Contact]) -> list[str]:
     found = []
     for one in contacts:
         comm = one.space.mesh.comm
-        peak = max(comm.allgather(float(one.last.pressure.max(initial=0.0))))
         made = one.sagitta * one.body_stiffness
-        if not one.of_two_groups or not 0.0 < peak < made or any(comm.allgather(_match(one))):
+        if not one.of_two_groups or one.sagitta < TOUCHING * one.facet_size:
+            continue
+        peak = max(comm.allgather(_levelled(one)))
+        if not 0.0 < UNEVENNESS * peak < made or any(comm.allgather(_match(one))):
             continue
         found.append(
             f"contact of {one.name}: arcs over its flat facets are {one.sagitta:.3g} high, which "
-            f"bodies as stiff as these close under {made:.3g}, and the largest pressure is "
-            f"{peak:.3g}: pressures at points are those of the meshes, resultants are not; round "
-            "cells (order 2), finer facets or nodes that match mend it"
+            f"bodies as stiff as these close under {made:.3g}, and the largest pressure, as a mean "
+            f"over some facets, is {peak:.3g}: pressures at points are those of the meshes, "
+            "resultants are not; round cells (order 2), finer facets or nodes that match mend it"
         )
     return found
+
+
+def _levelled(contact: Contact) -> float:
+    """Largest mean of the pressure over some facets of the coarser side, of points of this rank."""
+    from scipy.spatial import cKDTree  # slow to import, and few get here
+
+    pressure, areas, x = contact.last.pressure, contact.areas, contact.points
+    closed = np.flatnonzero(pressure > 0.0)
+    if not len(closed):
+        return 0.0
+    reach = LEVELLED * max(contact.facet_size, contact.master_size)
+    near = cKDTree(x).query_ball_point(x[closed], reach)
+    return max(float(np.average(pressure[i], weights=areas[i])) for i in near)
 
 
 def _match(contact: Contact) -> bool:

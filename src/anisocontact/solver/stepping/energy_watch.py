@@ -100,18 +100,24 @@ class EnergyWatch:
             return 0.0
         told = ("external", "residual")
         held = sum(abs(value) for name, value in energies.items() if name not in told)
-        rounded = _ROUND_OFF * self._stiffness_energy()
-        return 0.0 if residual <= rounded else residual / max(self._work, held)
+        return 0.0 if residual <= self._rounded() else residual / max(self._work, held)
 
-    def _stiffness_energy(self) -> float:
-        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded.
+    def _rounded(self) -> float:
+        """What floating point leaves of energies, over all ranks.
 
-        At finite strain also of what has hardly moved, as energies of F = I + grad(u) are rounded.
+        Positions are known to a share of the size of the mesh. Forces are off by what is left of
+        nodes moved alone by that, `K_ii x_i`, and of `Term.lever`; these do work on displacements,
+        or where nothing has moved on what positions are off by themselves. At finite strain
+        energies of F = I + grad(u) are rounded too, so that what has hardly moved counts by the
+        size of its cells.
         """
-        bulk = self._problem.bulk
-        diagonal = bulk.diagonal.array_r
+        bulk, assembly = self._problem.bulk, self._problem.assembly
+        diagonal, extent = bulk.diagonal.array_r, assembly.layout.unknowns.extent
         moved = np.abs(self._problem.accepted().array_r[: len(diagonal)]) + bulk.rest_length
-        return float(self._problem.comm.allreduce(float(diagonal @ moved**2)))
+        moved += _ROUND_OFF * extent
+        forces = float(diagonal @ ((extent + moved) * moved))
+        held = assembly.terms.lever() * float(np.linalg.norm(moved))
+        return float(self._problem.comm.allreduce(_ROUND_OFF * (forces + held)))
 
     def _changed(self) -> tuple[bool, bool]:
         """Whether many points have begun or ended contact, or sliding, and more than the other."""
