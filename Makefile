@@ -19,10 +19,11 @@ run: setup ## run the main example and say where its pictures are
 	@$(IN_VENV) anisocontact run examples/$(EXAMPLE)/case.toml -o results/$(EXAMPLE) --overwrite
 	@echo "pictures: results/$(EXAMPLE)/report.html   fields for ParaView: results/$(EXAMPLE)/*.pvd"
 
-# Lint and tests at once; what lint has to say comes last. Tests of a file share what they solve. Durations are kept in build.
+# Lint and tests at once; what lint has to say comes last. Tests of a file share what they solve; tests/conftest.py has files in the
+# order in which no process is left alone with a long one. Durations are kept in build.
 define tested
   mkdir -p build; $(MAKE) --no-print-directory lint >build/lint.log 2>&1 & lint=$$!; tests=; \
-  $(IN_VENV) pytest -n auto --dist loadfile --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
+  $(IN_VENV) pytest -n auto --dist loadfile --no-loadscope-reorder --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
   wait $$lint || { cat build/lint.log >&2; exit 1; }; [ "$$tests" ]
 endef
 
@@ -48,14 +49,14 @@ sanitize: setup ## the programs of tests/cpp under address and undefined-behavio
 	  -DCMAKE_BUILD_TYPE=Debug -DANISOCONTACT_SANITIZE=address,undefined \
 	  -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING
 	@$(IN_VENV) cmake --build build/sanitize
-	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --output-on-failure
+	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --parallel --output-on-failure
 
 clang: setup ## the core and the programs of tests/cpp by clang++, where that is installed
 	@command -v clang++ >/dev/null 2>&1 || { echo "skipped: no clang++ on this machine"; exit 0; }; \
 	$(IN_VENV) cmake -S . -B build/clang -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DANISOCONTACT_WERROR=ON \
 	  -DANISOCONTACT_CPP_TESTS=ON -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING && \
 	$(IN_VENV) cmake --build build/clang && \
-	$(IN_VENV) ctest --test-dir build/clang --output-on-failure -E no_allocation
+	$(IN_VENV) ctest --test-dir build/clang --parallel --output-on-failure -E no_allocation
 
 mutants: setup ## change the core in one place at a time; some test has to notice each
 	@$(IN_VENV) python tools/mutants.py

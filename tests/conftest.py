@@ -5,7 +5,9 @@ from __future__ import annotations
 import signal
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,6 +27,24 @@ Pair = tuple[float, float]
 
 #: What a test may take that `make test` runs, s.
 LONGEST = 5.0
+
+
+#: Tests that one that is marked slow takes as long as, about.
+WEIGHT = 100
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Give processes that share the tests by files the longest files first.
+
+    One that begins with a long file as the others end works alone.
+    """
+    if not hasattr(config, "workerinput"):
+        return
+    lengths: dict[Path, int] = defaultdict(int)
+    for item in items:
+        lengths[item.path] += WEIGHT if item.get_closest_marker("slow") else 1
+    items.sort(key=lambda item: -lengths[item.path])
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
@@ -208,6 +228,13 @@ class FiniteElements:
     block = staticmethod(make_block)
     tensor = staticmethod(plane_tensor)
     tangent_errors = staticmethod(tangent_errors)
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of the command draw nothing: pictures take longer than a small run."""
+    none = nullcontext(lambda folder: [])
+    monkeypatch.setattr("anisocontact.results.beside.report_beside", lambda wanted: none)
 
 
 @pytest.fixture(scope="session")

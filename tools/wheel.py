@@ -17,6 +17,7 @@ import tempfile
 import time
 import tomllib
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -196,12 +197,15 @@ def check(folder: Path) -> list[str]:
         raise WheelError(f"no Python {' or '.join(VERSIONS)} found")
     say("building sdist and wheel of the last commit")
     wheel, tree = build(next(iter(pythons.values())), folder)
-    for version, python in pythons.items():
+
+    def used(version: str, python: str) -> None:
         say(f"using {wheel.name} in Python {version} ({python})")
         place = folder / version
         place.mkdir()
         use(make_venv(python, place / "venv"), wheel, tree, place)
-        shutil.rmtree(place)
+
+    with ThreadPoolExecutor() as pool:  # each waits for processes of its own
+        list(pool.map(used, pythons.keys(), pythons.values()))
     DIST.mkdir(exist_ok=True)
     for built in (*folder.glob("*.tar.gz"), wheel):
         shutil.copy(built, DIST)
