@@ -155,6 +155,7 @@ def test_what_is_taken_over(deck: Path, capsys: pytest.CaptureFixture[str]):
     assert 'method = "penalty"' in deck.with_suffix(".toml").read_text()
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: foot and contact carry the pressure on the head, then the force and the weight
     besides, to 1e-6. Source: balance. Tolerance: Newton's."""
@@ -277,6 +278,7 @@ def test_a_tie(deck: Path, capsys: pytest.CaptureFixture[str], option: str, give
     assert "contact" not in case
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: NLGEOM asks for a material at finite strain, CPE4 for plane strain with its
     thickness; a node that is held by its number gets a name."""
@@ -295,6 +297,7 @@ def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.Captur
     assert main(["run", str(tmp_path / "plane.toml"), "-o", str(tmp_path / "out")]) == 0
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_pressures_on_single_elements(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: faces of elements by their numbers are a group for each pressure, named by the
     line of the keyword; a run carries them to 1e-6. Source: balance. Tolerance: Newton's."""
@@ -313,6 +316,7 @@ def test_pressures_on_single_elements(deck: Path, capsys: pytest.CaptureFixture[
     assert force[3] == pytest.approx(2000.0, rel=1e-6)
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_flow_curve(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: yield stress over plastic strain, at finite strain where NLGEOM asks for it; the
     contact carries the pressure, which is beyond the first yield stress. Source: balance, the area

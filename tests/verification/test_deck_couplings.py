@@ -131,6 +131,7 @@ def test_what_is_taken_over(
     assert case["step"] == renamed
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_case_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Requirement: the force on the point shortens the column by F L / (E A) = 0.02, a fifth of it
     half of the way, and holding its turn takes the moment of the arm to the middle of the head, 10
@@ -198,6 +199,7 @@ PLANE = """*NODE
 """
 
 
+@pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(
     ("element", "free", "area"),
     [("CPE4", {"x", "y", "rz_deg"}, 20.0), ("CAX4", {"y"}, 100.0 * math.pi)],
