@@ -195,3 +195,16 @@ def test_a_mixed_problem_has_its_contact_on_its_own_displacement(given):
         ContactProblem(form, w)
     with pytest.raises(InputError, match="with 1 components given"):
         Model.of(spaces[0].sub(1), {"pad.sole": given.bottom})
+
+
+def test_a_contact_that_is_given_twice_is_one_line(given):
+    """It would push and rub twice: two contacts have another slave or another master."""
+    import ufl
+
+    u, v = fem.Function(given.space), ufl.TestFunction(given.space)
+    form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
+    model, low = Model.of(given.space, {"pad.sole": given.bottom}), _interface(-0.1)
+    one, again, other = (Contact(model, "pad.sole", plate) for plate in (low, low, _interface()))
+    ContactProblem(form, u, contacts=[one, other])
+    with pytest.raises(InputError, match=r"^contacts: contact 'pad\.sole' is given twice$"):
+        ContactProblem(form, u, contacts=[one, other, again])

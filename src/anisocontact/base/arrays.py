@@ -33,15 +33,46 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
         >>> points((1, 2, 3), 3).shape
         (1, 3)
     """
-    try:
-        a = np.ascontiguousarray(np.atleast_2d(np.asarray(x, dtype=np.float64)))
-    except (TypeError, ValueError):
-        raise InputError(f"{x!r} given, an array of numbers needed", field=name) from None
-    if a.ndim != 2 or a.shape[1] != columns or (rows is not None and a.shape[0] != rows):
-        needed = "n" if rows is None else rows
-        raise InputError(
-            f"an array of shape {a.shape} given, ({needed}, {columns}) needed", field=name
-        )
+    a = np.ascontiguousarray(np.atleast_2d(_given(x, name)))
+    return _of_shape(a, "n" if rows is None else rows, (columns,), name)
+
+
+def rows_of(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
+    """`x` as an array of doubles, a row of a shape for each of n things.
+
+    Args:
+        x: What was given.
+        shape: Shape of a row.
+        name: Name of the argument, for the message.
+
+    Returns:
+        The array, (n, *shape).
+
+    Raises:
+        InputError: Another shape was given, or something else than numbers.
+
+    Example:
+        >>> rows_of(np.zeros(6), (6,), "strain")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: strain: an array of shape (6,) given, (n, 6) needed
+    """
+    return _of_shape(_given(x, name), "n", shape, name)
+
+
+def _given(x: object, name: str) -> Floats:
+    """What was given as numbers."""
+    a = _real(x)
+    if a is None:
+        text = " ".join(f"{x!r:.60}".split())
+        raise InputError(f"{text} given, an array of real numbers needed", field=name)
+    return a
+
+
+def _of_shape(a: Floats, count: int | str, shape: tuple[int, ...], name: str) -> Floats:
+    """The array, if it has rows of a shape, as many as are needed."""
+    if a.shape[1:] != shape or a.ndim == 0 or count not in ("n", len(a)):
+        needed = ", ".join(str(one) for one in (count, *shape))
+        raise InputError(f"an array of shape {a.shape} given, ({needed}) needed", field=name)
     return a
 
 
@@ -64,13 +95,7 @@ def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
         >>> answered([1, 2], (2,), "the law Creeping", "energy").tolist()
         [1.0, 2.0]
     """
-    found = None
-    try:
-        given = np.asarray(x)
-        if given.dtype.kind in _REAL:
-            found = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        pass
+    found = _real(x)
     if found is None:
         text = " ".join(f"{who} returned {x!r:.60}".split())
         raise InputError(f"{text}, an array of real numbers needed", field=part)
@@ -78,6 +103,15 @@ def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
         text = f"{who} returned an array of shape {found.shape}, {shape} needed"
         raise InputError(text, field=part)
     return found
+
+
+def _real(x: object) -> Floats | None:
+    """An array of real numbers; None if it is something else."""
+    try:
+        given = np.asarray(x)
+        return np.asarray(given, dtype=np.float64) if given.dtype.kind in _REAL else None
+    except (TypeError, ValueError):
+        return None
 
 
 def read_only(x: npt.NDArray[Any]) -> npt.NDArray[Any]:

@@ -8,8 +8,10 @@ behaviours have their strains, stresses and tangents in it.
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import rows_of
 
 
 def _basis() -> Floats:
@@ -23,7 +25,7 @@ def _basis() -> Floats:
 _BASIS = _basis()
 
 
-def to_mandel(tensors: Floats) -> Floats:
+def to_mandel(tensors: npt.ArrayLike) -> Floats:
     """Vectors of symmetric tensors.
 
     Args:
@@ -32,15 +34,18 @@ def to_mandel(tensors: Floats) -> Floats:
     Returns:
         The vectors, (n, 6), in the same unit.
 
+    Raises:
+        InputError: Another shape was given, or something else than numbers.
+
     Example:
         >>> shear = np.array([[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 3.0]]])
         >>> to_mandel(shear).round(3).tolist()
         [[0.0, 0.0, 3.0, 1.414, 0.0, 0.0]]
     """
-    return np.asarray(np.einsum("nij,aij->na", tensors, _BASIS))
+    return np.asarray(np.einsum("nij,aij->na", rows_of(tensors, (3, 3), "tensors"), _BASIS))
 
 
-def from_mandel(vectors: Floats) -> Floats:
+def from_mandel(vectors: npt.ArrayLike) -> Floats:
     """Symmetric tensors of vectors.
 
     Args:
@@ -49,14 +54,17 @@ def from_mandel(vectors: Floats) -> Floats:
     Returns:
         The tensors, (n, 3, 3), in the same unit.
 
+    Raises:
+        InputError: Another shape was given, or something else than numbers.
+
     Example:
         >>> from_mandel(np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]))[0].tolist()
         [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
     """
-    return np.asarray(np.einsum("na,aij->nij", vectors, _BASIS))
+    return np.asarray(np.einsum("na,aij->nij", rows_of(vectors, (6,), "vectors"), _BASIS))
 
 
-def slope_from_mandel(matrices: Floats) -> Floats:
+def slope_from_mandel(matrices: npt.ArrayLike) -> Floats:
     """Derivatives of symmetric tensors by symmetric tensors.
 
     Args:
@@ -65,9 +73,13 @@ def slope_from_mandel(matrices: Floats) -> Floats:
     Returns:
         The derivatives, (n, 3, 3, 3, 3), symmetric in the last two indices.
 
+    Raises:
+        InputError: Another shape was given, or something else than numbers.
+
     Example:
         >>> unit = slope_from_mandel(np.eye(6)[None])[0]
         >>> float(unit[0, 1, 0, 1].round(9)), float(unit[0, 0, 0, 0])
         (0.5, 1.0)
     """
+    matrices = rows_of(matrices, (6, 6), "matrices")
     return np.asarray(np.einsum("nab,aij,bkl->nijkl", matrices, _BASIS, _BASIS, optimize=True))

@@ -143,6 +143,11 @@ class Contact(Pass):
         self.physical_adhesion, self.goes_on = True, False
         self.facet_of_point = self.slave_points.facet
 
+    def same_pair(self, other: Contact) -> bool:
+        """Whether another contact has the same slave and the same master."""
+        masters = self._made_of[1], other._made_of[1]
+        return self.groups == other.groups and (len(self.groups) > 1 or masters[0] is masters[1])
+
     def go_on_beyond(self, seams: Sequence[Seam]) -> None:
         """Meet what goes on beyond the cut faces of a sector, before the first step.
 

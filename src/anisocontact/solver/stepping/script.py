@@ -70,7 +70,8 @@ class ContactProblem(AssembledSystem):
         balance: Forces of the last evaluation.
 
     Raises:
-        InputError: A contact lives on another space than `u`, or its rigid body is free.
+        InputError: A contact lives on another space than `u`, is given twice, or its rigid body
+            is free.
 
     See `examples/dolfinx_script/rubber_pad.py` for a whole script.
 
@@ -370,7 +371,9 @@ class ContactProblem(AssembledSystem):
 
 def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
     """Where the displacement is among the unknowns of a script."""
-    for contact in contacts:
+    for i, contact in enumerate(contacts):
+        if any(contact.same_pair(one) for one in contacts[:i]):
+            raise InputError(f"contact {contact.name!r} is given twice", "contacts")
         if not (contact.unknowns.among(space) and contact.unknowns.same(contacts[0].unknowns)):
             raise InputError(
                 f"contact {contact.name!r} is defined on another space than u", "contacts"
