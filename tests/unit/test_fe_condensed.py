@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import scipy.sparse
 from tests.unit.condensed_samples import condensation, matrix_of
 
 from anisocontact.solver import Solver, Step
+from anisocontact.solver.strategies.condensed import pardiso
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.krylov import gmres
@@ -49,6 +52,25 @@ def test_partial_factor(way: Any) -> None:
         np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-13)
         assert not x[border].any()
     factor.close()
+
+
+def test_mkl_is_found_where_packages_put_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The package of PyPI names its files, conda puts the library into `lib` of its environment.
+
+    Requirement: both are looked at, no other folder is, and a file that is no library is passed
+    over without an error.
+    """
+    library = tmp_path / "lib" / "libmkl_rt.so.2"
+    library.parent.mkdir()
+    library.write_text("no library")
+    monkeypatch.setattr(pardiso.sys, "prefix", str(tmp_path))
+    packaged = Mock(**{"locate.return_value": tmp_path / "libmkl_rt.so.3"})
+    packaged.name = "libmkl_rt.so.3"
+    monkeypatch.setattr(pardiso, "files", lambda package: [packaged])
+    assert list(pardiso._libraries()) == [tmp_path / "libmkl_rt.so.3", library]
+    assert pardiso.routine.__wrapped__() is None
 
 
 def test_singular_schur_complement(way: Any) -> None:

@@ -1,10 +1,15 @@
-"""Partial factorisation by Pardiso of Intel's MKL, for those who have installed `pypardiso`."""
+"""Partial factorisation by Pardiso of Intel's MKL, for those who have installed it."""
 
 from __future__ import annotations
 
 import ctypes
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
+from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
 from typing import Any, override
 
 import numpy as np
@@ -14,6 +19,8 @@ import scipy
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular
 
+#: The library of MKL that finds the others.
+_RUNTIME = "libmkl_rt.so"
 #: Real, symmetric, positive definite.
 _KIND = 2
 #: Places of `iparm`, counted from one, and what is put there: values are given; nested dissection;
@@ -27,17 +34,22 @@ _PIVOT = -4
 
 @cache
 def routine() -> Any:
-    """`pardiso` of the MKL that `pypardiso` finds; None where there is none."""
+    """`pardiso` of the MKL beside this Python; None where there is none."""
     # else its threads and those of OpenBLAS wait for each other, spinning
     os.environ.setdefault("KMP_BLOCKTIME", "0")
-    try:
-        from pypardiso import PyPardisoSolver
+    for library in _libraries():
+        with suppress(OSError, AttributeError):
+            found = ctypes.CDLL(str(library)).pardiso
+            found.restype = None
+            return found
+    return None
 
-        found = PyPardisoSolver().libmkl["pardiso"]
-    except ImportError:
-        return None
-    found.restype = None
-    return found
+
+def _libraries() -> Iterator[Path]:
+    """Where MKL's library may be: that of the package of PyPI, then that of a conda environment."""
+    with suppress(PackageNotFoundError):
+        yield from (Path(file.locate()) for file in files("mkl") or () if _RUNTIME in file.name)
+    yield from sorted(Path(sys.prefix, "lib").glob(f"{_RUNTIME}*"))
 
 
 class PardisoFactor(Eliminated):
