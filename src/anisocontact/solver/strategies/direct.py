@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from anisocontact.base.strategies import DIRECT, strategy_entry
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
+from anisocontact.solver.strategies.krylov import krylov_pays
 from anisocontact.solver.strategies.newton import Newton
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.terms.persistent import Arrays
@@ -38,6 +39,8 @@ class DirectStrategy:
         yield from too_large(f"a factorisation of {count} unknowns", factor_bytes(count))
         if count > MOST_FACTORISED:
             yield f"{count} unknowns, more than {MOST_FACTORISED}: Krylov iterations are faster"
+            return
+        yield from krylov_pays(task)
 
     def solver(
         self,

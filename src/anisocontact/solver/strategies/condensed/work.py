@@ -63,7 +63,7 @@ def work(problem: Problem, steps: Sequence[Step], touched: Flags) -> Work:
     """
     count = 3.0 * np.count_nonzero(touched & _changing(problem, len(touched)))
     dense = operation_cost(count**3 / 3.0)  # two thirds, twice as fast in single precision
-    entries, operations = whole_factor(_coupled(problem, steps), problem.unknowns)
+    entries, operations = whole_factor(coupled_nodes(problem, steps), problem.unknowns)
     if not problem.linear:
         dense += _SOLUTIONS * (entries + count**2) / 2.0
     return Work(dense, factorisation_cost(entries, operations))
@@ -79,8 +79,13 @@ def _changing(problem: Problem, nodes: int) -> Flags:
     return found
 
 
-def _coupled(problem: Problem, steps: Sequence[Step]) -> scipy.sparse.csr_array:
-    """Which nodes are coupled in the tangent of all, by bodies and by contacts, (nodes, nodes)."""
+def coupled_nodes(problem: Problem, steps: Sequence[Step]) -> scipy.sparse.csr_array:
+    """Which nodes are coupled in the tangent of all, by bodies and by contacts, (nodes, nodes).
+
+    Args:
+        problem: The problem, on one process.
+        steps: What will be done: tells what will touch.
+    """
     graph = node_graph(problem.bulk.stiffness)
     meshed = [contact for contact in problem.contacts if contact.meshed]
     for rows, columns in ContactPrediction(meshed, steps).pairs(None, 0.0):
