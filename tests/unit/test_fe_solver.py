@@ -31,7 +31,8 @@ def fails_beyond(interface, limit):
 @pytest.mark.parametrize(
     ("values", "line"),
     [
-        ({"increments": 0}, "step 'a'.increments: 0 given, must be >= 1"),
+        ({"increments": 0}, "step 'a'.increments: 0 given, allowed: 1 to 10000000"),
+        ({"increments": 10**20}, f"step 'a'.increments: {10**20} given, allowed: 1 to 10000000"),
         ({"increments": 2.5}, "increments: 2.5 given, a whole number needed"),
         ({"duration": 0.0}, "step 'a'.duration: 0.0 given, must be > 0"),
         (

@@ -314,6 +314,9 @@ def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
     except ValueError:  # rows of different lengths
         a = np.asarray(None)
     fits = p.kind == "array" or a.shape in ((2, 3), (6,))
+    if not isinstance(given, np.ndarray):  # NumPy takes true for 1 where there are numbers beside
+        each = np.asarray(given, dtype=object).ravel() if fits else ()
+        fits = fits and not any(isinstance(one, bool | np.bool_) for one in each)
     if a.ndim == 0 or a.dtype.kind not in "iuf" or not fits:
         raise InputError(f"{reprlib.repr(given)} given, {_form(p)} needed", field=field)
     return [float(v) for v in a.ravel()]

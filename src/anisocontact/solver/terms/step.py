@@ -21,6 +21,8 @@ _FORCES = ("traction", "force", "body_force")
 # Fields that have one number for each name.
 _PLAIN = ("pressure", "temperature")
 
+#: Increments beyond which a step has no end.
+MOST_INCREMENTS = 10_000_000
 #: Share of the way along a path above which it is said that increments cut it off.
 _CUT_OFF = 0.05
 #: What a value is prescribed to be along a step: a number at its end, or all the way.
@@ -41,7 +43,7 @@ class Step:
 
     Attributes:
         name: Name in progress and output.
-        increments: Number of equal increments, >= 1.
+        increments: Number of equal increments, 1 to 10,000,000.
         displacement: Facet group -> axis "x", "y" or "z" -> displacement at the end, length.
         traction: Facet group -> axis -> force per reference area at the end, stress.
         duration: Time the step takes, > 0, time.
@@ -90,8 +92,9 @@ class Step:
     until: Until | None = None
 
     def __post_init__(self) -> None:
-        if self.increments < 1:
-            raise self._error("increments", f"{self.increments} given, must be >= 1")
+        if not 1 <= self.increments <= MOST_INCREMENTS:
+            allowed = f"allowed: 1 to {MOST_INCREMENTS}"
+            raise self._error("increments", f"{self.increments} given, {allowed}")
         if not (math.isfinite(self.duration) and self.duration > 0.0):
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
         for kind in ("displacement", "anchor", *_FORCES):
