@@ -133,3 +133,22 @@ def test_history_goes_on_with_other_columns(tmp_path):
 def test_results_of_a_folder_without_any(tmp_path):
     with pytest.raises(InputError, match="holds no results"):
         Results(tmp_path)
+
+
+@pytest.mark.parametrize("left", [None, 0, 1, 2])
+def test_a_table_that_has_lost_rows_does_not_go_on(tmp_path, left):
+    """As after a power cut; cut to its size the file had got zeros for what it lacks."""
+    path = tmp_path / "history.csv"
+    table = HistoryTable(path)
+    for time in (1.0, 2.0):
+        table.append({"time": time})
+    lines = path.read_text().splitlines(keepends=True)
+    if left is None:
+        path.unlink()
+    else:
+        path.write_text("".join(lines[:left]))
+    with pytest.raises(InputError, match=r"history.csv' has [01] rows, .* written 2: put the file"):
+        HistoryTable(path).resume(table.state())
+    path.write_text("".join(lines))
+    HistoryTable(path).resume(table.state())
+    assert path.read_text().splitlines(keepends=True) == lines

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.whole_files import replacing
 
 #: Columns that hold text.
@@ -39,13 +40,22 @@ class HistoryTable:
         return {"columns": self._columns, "size": self._size, "rows": self._rows}
 
     def resume(self, state: Mapping[str, Any]) -> None:
-        """Go on behind the rows of a state; later ones are cut off."""
+        """Go on behind the rows of a state; later ones are cut off.
+
+        Raises:
+            InputError: The file has fewer rows than the run has written.
+        """
         self._columns, self._size = list(state["columns"]), state["size"]
         self._rows = state["rows"]
         if not self._size:
             self._path.unlink(missing_ok=True)
             return
-        header, *rows = _cells(self._path)
+        header, *rows = (self._path.is_file() and _cells(self._path)) or [[]]
+        if len(rows) < self._rows:
+            raise InputError(
+                f"'{self._path}' has {len(rows)} rows, the run that is to go on has written "
+                f"{self._rows}: put the file back, or run without --restart"
+            )
         if header == self._columns:
             os.truncate(self._path, self._size)
         else:  # has got columns since
