@@ -17,6 +17,7 @@ from anisocontact.interface import Interface
 from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
 
 _DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
+_CARRIER = "body that carries these directions; angles count about the master's normal on either"
 _DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
 
 
@@ -57,7 +58,7 @@ def _directed(name: str, base: type[Section], known: Registries, about: str) -> 
 
 def _on(default: str) -> tuple[Any, str]:
     """A key for the body that carries a direction field."""
-    return Annotated[str, word("body that carries these directions", *SIDES)], default
+    return Annotated[str, word(_CARRIER, *SIDES)], default
 
 
 def laws(known: Registries) -> dict[str, Any]:
