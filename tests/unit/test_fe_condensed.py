@@ -82,6 +82,24 @@ def test_singular_schur_complement(way: Any) -> None:
     factor.close()
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_a_body_that_its_border_alone_holds(way: Any, seed: int) -> None:
+    """Springs between 30 unknowns that nothing holds, of which four are left.
+
+    Requirement: a Schur complement that is singular is one nevertheless, as forces may hold what
+    is left; its least pivot is rounding, of either sign. Source: NumPy. Tolerance: rounding.
+    """
+    rng = np.random.default_rng(seed)
+    springs = np.triu(rng.random((30, 30)) * (rng.random((30, 30)) < 0.4), 1)
+    springs = springs + springs.T + np.diag(np.full(29, 0.1), 1) + np.diag(np.full(29, 0.1), -1)
+    dense = np.diag(springs.sum(axis=1)) - springs
+    border = np.array([2, 11, 12, 25])
+    factor = way(scipy.sparse.csr_array(dense), border)
+    expected = _schur(dense, border, np.setdiff1d(np.arange(30), border))
+    np.testing.assert_allclose(factor.schur, expected, atol=1e-14 * dense.max())
+    factor.close()
+
+
 def test_singular_interior(way: Any) -> None:
     """A spring between two unknowns that nothing else holds."""
     matrix = scipy.sparse.csr_array(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, -1.0], [0.0, -1.0, 1.0]]))

@@ -17,7 +17,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular
+from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular, solves
 
 #: The library of MKL that finds the others.
 _RUNTIME = "libmkl_rt.so"
@@ -55,12 +55,16 @@ def _libraries() -> Iterator[Path]:
 class PardisoFactor(Eliminated):
     """An interior eliminated by Pardiso; arguments as of `Way`.
 
-    The Schur complement comes out of the factorisation, of which only a triangle is made.
+    The Schur complement comes out of the factorisation, of which only a triangle is made. Pardiso
+    goes on and factorises it as well, which has to have positive pivots: those of a body that
+    contact alone holds are zero. The diagonal of the border is doubled, and taken off again.
     """
 
     def __init__(self, matrix: scipy.sparse.csr_array, border: Ints) -> None:
         n = matrix.shape[0]
-        upper = scipy.sparse.triu(matrix, format="csr")
+        doubled: Floats = np.zeros(n)
+        doubled[border] = matrix.diagonal()[border]
+        upper = scipy.sparse.triu(matrix + scipy.sparse.diags_array(doubled), format="csr")
         upper.sort_indices()
         self._border = border
         self._entries = np.ascontiguousarray(upper.data, dtype=np.float64)
@@ -77,7 +81,11 @@ class PardisoFactor(Eliminated):
         if self._call(_FACTORISE, np.zeros((n, 1)), self.schur) != 0:
             self.close()
             raise singular()
+        self.schur[np.diag_indices(count)] -= doubled[border]
         mirror(self.schur)
+        if not solves(self, matrix, border):
+            self.close()
+            raise singular()
 
     @override
     def interior(self, b: Floats) -> Floats:
