@@ -45,6 +45,8 @@ class Outcome:
         relaxed: Whether penalties hold where no multipliers were found.
         softer: Whether smaller penalties in the projections led to the multipliers.
         refused: Whether an equilibrium was found that no model of a body holds for.
+        ahead: Equilibrium at the end of the part that was refused as points turn too far; smaller
+            parts are on the way to it.
     """
 
     result: NewtonResult
@@ -55,6 +57,7 @@ class Outcome:
     relaxed: bool = False
     softer: bool = False
     refused: bool = False
+    ahead: Vec | None = None
 
     @property
     def grave(self) -> bool:
@@ -127,6 +130,7 @@ class Attempts:
         self._share = 1.0
         self._final = False
         self._failed: FailedPoint | None = None
+        self._ahead: Vec | None = None
         self._continuation = Continuation(problem, newton)
 
     def solve(
@@ -151,7 +155,7 @@ class Attempts:
         Returns:
             Whether one converged, and what kept the others from it.
         """
-        spent, self._failed, failed = 0, None, ""
+        spent, self._failed, self._ahead, failed = 0, None, None, ""
         overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
         found: list[Culprit] = []
         seen: set[str] = set()
@@ -172,7 +176,7 @@ class Attempts:
                 return Outcome(result, relaxed=by == PENALTIES, softer=by == SOFTER)
             # nothing but a smaller part can help
             if self._turns.objects or (self.events is not None and self.events.objects):
-                return Outcome(replace(result, iterations=spent))
+                return Outcome(replace(result, iterations=spent), ahead=self._ahead)
             # where bodies that flow find nothing that is not what was in the way
             if not way.flowing or result.culprits:
                 failed, found = result.reason, _graver(found, culprits)
@@ -235,6 +239,7 @@ class Attempts:
             if not (result.reason or refusal or way.flowing):
                 # a jump turns points by as much in the smallest part
                 refusal = self._turns.objection(problem)
+                self._ahead = x if self._turns.objects else None
             if not result.reason and refusal is None and self.events is not None:
                 refusal = self.events.objection(x)
             if not result.reason and refusal is None:

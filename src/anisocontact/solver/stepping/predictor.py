@@ -8,7 +8,9 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.rigid import RigidBody
+from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Persistent
 
 #: Way of a free body over what it touches in a part, over the length that it touches along the way,
 #: from which on too many other points are pressed in the next one.
@@ -17,6 +19,10 @@ TRAVELS = 0.15
 
 class Predictor:
     """Extrapolates what has happened in the last part to the end of the next one.
+
+    Where an equilibrium further on is known, which was refused as its part was too large to follow
+    how points turn, smaller parts are sought on the way to it: after a change of direction what
+    has happened before says little.
 
     Where a free rigid body rolls or slides over a deformable one, other points are pressed next:
     extrapolated displacements would press those that it leaves, and contact is lost. There rigid
@@ -28,6 +34,9 @@ class Predictor:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self.travels = problem, False
+        #: The equilibrium further on, and how far on it is, share of an increment.
+        self._ahead: Vec | None = None
+        self._left = 0.0
         self._points: dict[Contact, Floats] = {}
         self._places: dict[RigidBody, Floats] = {}
 
@@ -37,27 +46,73 @@ class Predictor:
         self._places = {body: body.accepted.translation for body in rigid.free}
         self._points = {one: one.points for body in rigid.free for one in rigid.contacts[body]}
 
-    def accept(self) -> None:
-        """Take note of a part that has been accepted; collective."""
+    def forget(self) -> None:
+        """Take it that another step begins: nothing further on is known."""
+        self._ahead, self._left = None, 0.0
+
+    def refuse(self, state: Vec, part: float) -> None:
+        """Take note of an equilibrium that was refused as points turn too far.
+
+        Args:
+            state: The equilibrium.
+            part: Size of the part that leads to it, share of an increment.
+        """
+        self._ahead, self._left = state, part
+
+    def accept(self, part: float) -> None:
+        """Take note of a part that has been accepted; collective.
+
+        Args:
+            part: Its size, share of an increment.
+        """
+        self._left -= part
+        if self._left <= _ROUNDING:
+            self.forget()
         rigid = self._problem.rigid
         ways = [self._way(body, one) for body in rigid.free for one in rigid.contacts[body]]
         self.travels = any(way > TRAVELS for way in ways)
         self.begin()
 
-    def state(self, last: Vec, before: Vec, ratio: float) -> tuple[Vec, float]:
+    def state(self, last: Vec, before: Vec | None, pace: Pace) -> tuple[Vec, float]:
         """Where to start, and by what part of the last change multipliers go on from there.
 
         Args:
             last: Accepted state.
-            before: The accepted state before it.
-            ratio: Size of the next part over that of the last one.
+            before: The accepted state before it; None where there is none to extrapolate from.
+            pace: Sizes of the next part and of the last one.
         """
+        ratio = 0.0 if before is None else pace.part / pace.last
+        if self._ahead is not None and pace.part <= self._left + _ROUNDING:
+            share = pace.part / self._left
+            return (1.0 - share) * last + share * self._ahead, ratio
+        if before is None:
+            return last, ratio
         first = (1.0 + ratio) * last - ratio * before
         if not self.travels:
             return first, ratio
         owned = self._problem.layout.owned
         first.array[:owned] = last.array_r[:owned]
         return first, 0.0
+
+    def persistent(self, kept: Persistent) -> None:
+        """Put what the next state depends on to what is kept."""
+        kept.common["predictor"] = np.array([self.travels, self._left])
+        if self._ahead is not None:
+            kept.nodal["ahead"], kept.common["ahead"] = self._problem.layout.split(self._ahead)
+
+    def restore(self, kept: Persistent, states: bool) -> None:
+        """Go on from what `persistent` gave.
+
+        Args:
+            kept: What was kept.
+            states: Whether states that were kept can be started from.
+        """
+        travels, left = kept.common["predictor"]
+        self.travels = bool(travels)
+        self.forget()
+        if states and "ahead" in kept.nodal:
+            ahead = self._problem.layout.joined(kept.nodal["ahead"], kept.common["ahead"])
+            self.refuse(ahead, float(left))
 
     def _way(self, body: RigidBody, contact: Contact) -> float:
         """Way of a body along what it touches in the last part, over the length that it touches."""
@@ -76,4 +131,6 @@ class Predictor:
         return size / (contact.facet_size + float(most - least)) if count else 0.0
 
 
+#: Rounding of sizes of parts.
+_ROUNDING = 1e-9
 _TINY = float(np.finfo(np.float64).tiny)

@@ -180,7 +180,7 @@ class Solver:
         numbers = asdict(pace)
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
-        numbers |= {"kink": self._turns.kink, "travels": self._predictor.travels}
+        numbers["kink"] = self._turns.kink
         numbers["refused_angle"], numbers["refused_size"] = self._turns.refused
         kept.common["stopped"] = np.array([*place.stopped.items()]).reshape(-1, 2)
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
@@ -188,6 +188,7 @@ class Solver:
             kept.common.update(place.events.persistent())
         if place.before is not None:
             kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
+        self._predictor.persistent(kept)
         kept.strategy.update(self._kept if self._newton is None else self._newton.persistent())
         return kept
 
@@ -198,7 +199,6 @@ class Solver:
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         self._turns.kink = numbers.pop("kink")
         self._turns.refused = numbers.pop("refused_angle"), numbers.pop("refused_size")
-        self._predictor.travels = numbers.pop("travels")
         before = None
         stopped = {int(i): float(factor) for i, factor in kept.common["stopped"]}
         self.problem.restore(kept, self.steps[: step + begun], stopped)
@@ -207,7 +207,9 @@ class Solver:
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
         goes_on = bool(self._kept) and self.choice.strategy.reduces
-        if "before" in kept.nodal and (goes_on or not self.problem.reduction.pending()):
+        states = goes_on or not self.problem.reduction.pending()
+        self._predictor.restore(kept, states)
+        if "before" in kept.nodal and states:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         pace = Pace(self.limits, **numbers)
         self.place = RunPosition(step, time, pace, begun, before, stopped=stopped)
@@ -251,6 +253,7 @@ class Solver:
         if not place.begun:
             self.problem.begin(step)
             self._turns.begin()
+            self._predictor.forget()
             place.begun = True
         prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
@@ -278,7 +281,7 @@ class Solver:
                 continue
             increment, done, part = pace.increment, pace.end, pace.part
             events.accept(done == 1.0)
-            self._predictor.accept()
+            self._predictor.accept(part)
             accepted = self._accepted(step, increment, done, outcome, events)
             pace.advance(outcome.iterations, outcome.relaxed, outcome.softer)
             if events.happened:
@@ -292,15 +295,13 @@ class Solver:
             yield accepted
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
-        """Solve the next part from the predictor: the state extrapolated to its end."""
-        pace, before = self.place.pace, self.place.before
+        """Solve the next part from the state that is predicted for its end."""
+        pace = self.place.pace
         dt = step.duration / step.increments
         whole = _whole(pace.increment, pace.end)
         part = dt if pace.part == 1.0 else pace.part * dt
         self.problem.set_load_factor(whole / step.increments, part)
-        first, ratio = last, 0.0
-        if before is not None:
-            first, ratio = self._predictor.state(last, before, pace.part / pace.last)
+        first, ratio = self._predictor.state(last, self.place.before, pace)
         self._turns.permitted = pace.cuttable
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
@@ -315,6 +316,8 @@ class Solver:
         tried, cuts = pace.part, pace.cuts
         if result.culprits:
             self.place.lost = outcome
+        if outcome.ahead is not None:
+            self._predictor.refuse(outcome.ahead, tried)
         if outcome.final or not pace.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         more = self._hint(step, cuts)
