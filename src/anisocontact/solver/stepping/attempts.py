@@ -45,8 +45,8 @@ class Outcome:
         relaxed: Whether penalties hold where no multipliers were found.
         softer: Whether smaller penalties in the projections led to the multipliers.
         refused: Whether an equilibrium was found that no model of a body holds for.
-        ahead: Equilibrium at the end of the part that was refused as points turn too far; smaller
-            parts are on the way to it.
+        ahead: Equilibrium at the end of the part that was refused as points turn too far, or as it
+            is beyond an event; smaller parts are on the way to it.
     """
 
     result: NewtonResult
@@ -242,6 +242,7 @@ class Attempts:
                 self._ahead = x if self._turns.objects else None
             if not result.reason and refusal is None and self.events is not None:
                 refusal = self.events.objection(x)
+                self._ahead = x if refusal is not None and not way.flowing else None
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []

@@ -20,9 +20,9 @@ TRAVELS = 0.15
 class Predictor:
     """Extrapolates what has happened in the last part to the end of the next one.
 
-    Where an equilibrium further on is known, which was refused as its part was too large to follow
-    how points turn, smaller parts are sought on the way to it: after a change of direction what
-    has happened before says little.
+    Where an equilibrium further on is known, which was refused as its part was too large, smaller
+    parts are sought on the way to it: after a change of direction what has happened before says
+    little.
 
     Where a free rigid body rolls or slides over a deformable one, other points are pressed next:
     extrapolated displacements would press those that it leaves, and contact is lost. There rigid
@@ -50,14 +50,15 @@ class Predictor:
         """Take it that another step begins: nothing further on is known."""
         self._ahead, self._left = None, 0.0
 
-    def refuse(self, state: Vec, part: float) -> None:
-        """Take note of an equilibrium that was refused as points turn too far.
+    def refuse(self, state: Vec | None, part: float) -> None:
+        """Take note of an equilibrium that was refused as its part is too large.
 
         Args:
-            state: The equilibrium.
+            state: The equilibrium; None where none was found.
             part: Size of the part that leads to it, share of an increment.
         """
-        self._ahead, self._left = state, part
+        if state is not None:
+            self._ahead, self._left = state, part
 
     def accept(self, part: float) -> None:
         """Take note of a part that has been accepted; collective.

@@ -276,6 +276,7 @@ class Solver:
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
             if outcome.result.reason:
+                self._predictor.refuse(outcome.ahead, pace.part)
                 if not events.objects:
                     self._cut(step, outcome)
                 continue
@@ -316,8 +317,6 @@ class Solver:
         tried, cuts = pace.part, pace.cuts
         if result.culprits:
             self.place.lost = outcome
-        if outcome.ahead is not None:
-            self._predictor.refuse(outcome.ahead, tried)
         if outcome.final or not pace.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         more = self._hint(step, cuts)
