@@ -40,7 +40,7 @@ def test_points_that_are_none_are_one_line(given: Any, says: str) -> None:
 def test_a_time_step_that_is_none_is_one_line(dt: float) -> None:
     """With NaN a point in contact was open, without a word."""
     interface = _interface()
-    with pytest.raises(InputError, match=r"^dt: .* given, must be >= 0$"):
+    with pytest.raises(InputError, match=r"^dt: .* given, (must be >= 0|a number needed)$"):
         interface.update(interface.initial_state([[0, 0, 0]]), [[0, 0, -1e-3]], dt=dt)
 
 
@@ -57,3 +57,12 @@ def test_tensors_of_another_shape_are_one_line(function: Any, given: Any, says: 
     """One tensor without its row is not taken for several."""
     with pytest.raises(InputError, match=f"^{says}$"):
         function(given)
+
+
+def test_points_are_as_many_as_states() -> None:
+    """One point is not taken for those of two states, and a step of no time is one."""
+    interface = _interface()
+    state = interface.initial_state(np.zeros((2, 3)))
+    with pytest.raises(InputError, match=r"^x: .* \(1, 3\) given, \(2, 3\) needed$"):
+        interface.update(state, [[0, 0, -1e-3]])
+    assert not interface.update(state, np.zeros((2, 3)), dt=0.0).failure.any()

@@ -8,13 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 import anisocontact
+from anisocontact.base import fenicsx
 from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry
 from anisocontact.base.typed import typed
+from anisocontact.mesh import BoxSpec, build_box
 
 #: What scripts are given and do not make, materials, which are checked by what they register, and
 #: what takes any class or function.
@@ -72,6 +76,7 @@ def _takes(
     deep: Mapping[str, Mapping[str, float]] = {},
     function: Callable[[float], float] = abs,
     kind: type[Any] = int,
+    array: npt.NDArray[np.float64] | None = None,
     anything: Any = None,
 ) -> str:
     return "taken"
@@ -94,6 +99,8 @@ FITS: list[dict[str, Any]] = [
     {"deep": {"a": 1.0}},
     {"function": max},
     {"kind": float},
+    {"array": np.ones(3)},
+    {"array": [1.0, 2.0]},
     {"anything": object()},
 ]
 
@@ -124,6 +131,8 @@ def test_what_fits_is_taken(given: dict[str, Any]) -> None:
         ("table", {3: ["b"]}, "{3: ['b']} given, values by name needed"),
         ("function", 3, "3 given, a function needed"),
         ("kind", 3, "3 given, type needed"),
+        ("array", 3, "3 given, an array needed"),
+        ("array", "a", "'a' given, an array needed"),
     ],
 )
 def test_what_does_not_fit_is_one_line(argument: str, given: Any, says: str) -> None:
@@ -144,3 +153,91 @@ def test_a_call_that_python_refuses_is_for_python() -> None:
     """An argument that there is not is no matter of types."""
     with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
         _takes(colour=1)  # type: ignore[call-arg]
+
+
+class _Half:
+    """A strategy that says what it is and cannot solve."""
+
+    entry = Entry("half", "strategy", "nothing", ())
+
+
+class _Nameless:
+    entry = "nameless"
+
+
+@pytest.mark.parametrize("kind", ["amplitude", "material", "path", "strategy"])
+@pytest.mark.parametrize(
+    ("given", "shown"), [(int, "int"), (3, "3"), (None, "None"), (_Nameless, "_Nameless")]
+)
+def test_what_is_registered_is_a_class_with_an_entry(kind: str, given: Any, shown: str) -> None:
+    """Requirement: what the class is to be, what was given, what is needed."""
+    with pytest.raises(InputError) as caught:
+        getattr(anisocontact, f"register_{kind}")(given)
+    assert str(caught.value) == f"{kind}: {shown} given, a class with an 'entry' needed"
+
+
+def test_a_strategy_that_lacks_parts_is_not_registered() -> None:
+    """It would fail at its first run, after everything was built."""
+    for _ in range(2):  # nothing of it is left
+        with pytest.raises(InputError, match=r"^strategy: _Half given, Strategy, which has costs"):
+            anisocontact.register_strategy(_Half)  # type: ignore[type-var]
+
+
+@pytest.mark.parametrize(
+    ("of", "given", "says"),
+    [
+        ("linear-elastic", {"material": 1}, "material: 1 given, a material needed"),
+        ("linear-elastic", {"u": 1}, "u: 1 given, a UFL vector of 3 components needed"),
+        ("neo-hookean", {"u": None}, "u: None given, a UFL vector of 3 components needed"),
+        (
+            "neo-hookean",
+            {"pressure": 1.0},
+            "pressure: given, NeoHookean keeps no change of volume apart",
+        ),
+        (
+            "neo-hookean-incompressible",
+            {"pressure": "a"},
+            "pressure: 'a' given, a UFL expression of one number needed",
+        ),
+    ],
+)
+def test_a_stress_of_what_is_none_is_one_line(of: str, given: dict[str, Any], says: str) -> None:
+    """Requirement: which argument, what was given, what is needed."""
+    cube = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+    model = build_box({"block": cube})
+    u = fenicsx.fem.Function(model.space)
+    material = anisocontact.make_material(of, E=1.0, nu=0.3)
+    with pytest.raises(InputError) as caught:
+        anisocontact.cauchy_stress(**{"material": material, "u": u, **given})
+    assert str(caught.value) == says
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"state": "s"}, "state: 's' given, an array needed"),
+        ({"state": None}, "state: None given, an array needed"),
+        ({"state": 3}, "state: 3 given, an array needed"),
+        ({"x": None}, "x: None given, an array of numbers needed"),
+        ({"dt": "a"}, "dt: 'a' given, a number needed"),
+        ({"slave": 3}, "slave: 3 given, SlaveSurface needed"),
+        ({"tangent": None}, "tangent: None given, True or False needed"),
+    ],
+)
+def test_an_update_of_what_is_none_is_one_line(given: dict[str, Any], says: str) -> None:
+    """Requirement: which argument, what was given, what is needed."""
+    plane = anisocontact.make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    laws = (
+        anisocontact.NormalLaw(penalty=1e3),
+        anisocontact.Adhesion(stiffness=(1e3, 1e3)),
+        anisocontact.Friction(coefficients=0.3),
+    )
+    interface = anisocontact.Interface(plane, *laws)
+    x = [[0.0, 0.0, -1e-3]]
+    state = interface.initial_state(x)
+    assert interface.update(state, x).traction[0, 2] > 0.0
+    with pytest.raises(InputError) as caught:
+        interface.update(**{"state": state, "x": x, **given})
+    assert str(caught.value) == says
+    with pytest.raises(InputError, match=r"^state: no states given"):
+        interface.update(state[None], x)

@@ -215,7 +215,7 @@ def register_amplitude[T: type[Any]](kind: T) -> T:
         The class, so that this serves as a decorator.
 
     Raises:
-        InputError: There is an amplitude of that name.
+        InputError: There is an amplitude of that name, or it is no class with an `entry`.
 
     Example:
         >>> register_amplitude(Sine)

@@ -70,7 +70,7 @@ def _given(x: object, name: str) -> Floats:
 
 def _of_shape(a: Floats, count: int | str, shape: tuple[int, ...], name: str) -> Floats:
     """The array, if it has rows of a shape, as many as are needed."""
-    if a.shape[1:] != shape or a.ndim == 0 or count not in ("n", len(a)):
+    if a.shape[1:] != shape or count not in ("n", len(a)):
         needed = ", ".join(str(one) for one in (count, *shape))
         raise InputError(f"an array of shape {a.shape} given, ({needed}) needed", field=name)
     return a

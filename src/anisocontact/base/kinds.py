@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
 from typing import Any
 
@@ -27,11 +28,12 @@ class Kinds:
         """Add a class.
 
         Raises:
-            InputError: There is one of that name.
+            InputError: There is one of that name, or it is no class with an `entry`.
         """
-        if kind.entry.name in self._kinds:
-            raise InputError(f"{kind.entry.name!r} is registered already", field=self._what)
-        self._kinds[kind.entry.name] = kind
+        name = entry_of(kind, self._what).name
+        if name in self._kinds:
+            raise InputError(f"{name!r} is registered already", field=self._what)
+        self._kinds[name] = kind
 
     def entries(self) -> tuple[Entry, ...]:
         """The entry of each, in the order of registration."""
@@ -52,3 +54,28 @@ class Kinds:
         entry = registry.entry(self.entries(), name, place)
         registry.values(entry, parameters, field)
         return self._kinds[name](**parameters, field=field)
+
+
+def entry_of(kind: object, field: str) -> Entry:
+    """The entry of a class that is to be registered.
+
+    Args:
+        kind: The class.
+        field: What it is to be, for the message.
+
+    Returns:
+        The entry.
+
+    Raises:
+        InputError: It is no class, or has no `entry` that is an `Entry`.
+
+    Example:
+        >>> entry_of(int, "material")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: material: int given, a class with an 'entry' needed
+    """
+    entry = getattr(kind, "entry", None)
+    if isinstance(kind, type) and isinstance(entry, Entry):
+        return entry
+    name = kind.__name__ if isinstance(kind, type) else reprlib.repr(kind)
+    raise InputError(f"{name} given, a class with an 'entry' needed", field)

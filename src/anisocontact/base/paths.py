@@ -210,7 +210,7 @@ def register_path[T: type[Any]](kind: T) -> T:
         The class, so that this serves as a decorator.
 
     Raises:
-        InputError: There is a path of that name.
+        InputError: There is a path of that name, or it is no class with an `entry`.
 
     Example:
         >>> register_path(Circle)

@@ -96,14 +96,20 @@ def _fits(hint: Any, value: Any) -> bool:
     """Whether a value is of a type; so are values of types that nothing is known of."""
     if hint is npt.ArrayLike:
         return _is_array(value)
-    if isinstance(hint, typing.TypeAliasType):
-        return _fits(hint.__value__, value)
+    if (meant := _meant(hint)) is not None:
+        return _fits(meant, value)
     origin, of = typing.get_origin(hint), typing.get_args(hint)
     if origin in (typing.Union, types.UnionType):
         return any(_fits(one, value) for one in of)
     if isinstance(origin, type):
         return _fits_generic(origin, of, value)
     return _fits_class(hint, value) if isinstance(hint, type) else True
+
+
+def _meant(hint: Any) -> Any:
+    """What a name stands for that `type` has given, as NumPy has its arrays; None for a type."""
+    alias = hint if isinstance(hint, typing.TypeAliasType) else typing.get_origin(hint)
+    return alias.__value__ if isinstance(alias, typing.TypeAliasType) else None
 
 
 def _is_array(value: Any) -> bool:
@@ -189,8 +195,8 @@ def _needed(hint: Any) -> str:
     """What is needed, in words."""
     if hint is npt.ArrayLike:
         return "an array of numbers"
-    if isinstance(hint, typing.TypeAliasType):
-        return _needed(hint.__value__)
+    if (meant := _meant(hint)) is not None:
+        return _needed(meant)
     origin, of = typing.get_origin(hint), typing.get_args(hint)
     if origin in (typing.Union, types.UnionType):
         words = [_needed(one) for one in _members(hint) if one is not type(None)]
@@ -205,8 +211,8 @@ def _needed(hint: Any) -> str:
 
 def _members(hint: Any) -> list[Any]:
     """Types of a union, also of those that it takes in by name."""
-    if hint is not npt.ArrayLike and isinstance(hint, typing.TypeAliasType):
-        return _members(hint.__value__)
+    if hint is not npt.ArrayLike and (meant := _meant(hint)) is not None:
+        return _members(meant)
     if typing.get_origin(hint) not in (typing.Union, types.UnionType):
         return [hint]
     return [member for one in typing.get_args(hint) for member in _members(one)]

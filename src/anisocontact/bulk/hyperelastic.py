@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from numbers import Real
 from typing import Any
 
 from anisocontact.base.errors import InputError
@@ -29,6 +31,9 @@ def deformation_gradient(u: Any) -> Any:
     Returns:
         F, (3, 3), UFL.
 
+    Raises:
+        InputError: Something else than a vector of three components was given.
+
     Example:
         >>> from anisocontact.base.fenicsx import fem
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -36,7 +41,14 @@ def deformation_gradient(u: Any) -> Any:
         >>> deformation_gradient(fem.Function(model.space)).ufl_shape
         (3, 3)
     """
-    return ufl.Identity(3) + ufl.grad(u)
+    return ufl.Identity(3) + ufl.grad(_displacement(u))
+
+
+def _displacement(u: Any) -> Any:
+    """What was given, if it can be one."""
+    if isinstance(u, ufl.core.expr.Expr) and u.ufl_shape == (3,):
+        return u
+    raise InputError(f"{reprlib.repr(u)} given, a UFL vector of 3 components needed", "u")
 
 
 def cauchy_stress(material: Any, u: Any, pressure: Any = None) -> Any:
@@ -51,6 +63,9 @@ def cauchy_stress(material: Any, u: Any, pressure: Any = None) -> Any:
     Returns:
         Stress tensor, (3, 3), stress.
 
+    Raises:
+        InputError: One of them is something else, or the material keeps no change of volume apart.
+
     Example:
         >>> from anisocontact.base.fenicsx import fem
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -58,14 +73,26 @@ def cauchy_stress(material: Any, u: Any, pressure: Any = None) -> Any:
         >>> cauchy_stress(NeoHookean(E=3.0, nu=0.25), fem.Function(model.space)).ufl_shape
         (3, 3)
     """
+    small, u = small_strain(material), _displacement(u)
     stress = material.stress(u) if material.linear else material.piola(u)
     if pressure is not None:
-        volume = material.volume(u)
-        stress += volume.stress(u, pressure) - volume.stress(u)
-    if small_strain(material):
+        stress += _stress_of_pressure(material, u, pressure)
+    if small:
         return stress
     gradient = deformation_gradient(u)
     return stress * gradient.T / ufl.det(gradient)
+
+
+def _stress_of_pressure(material: Any, u: Any, pressure: Any) -> Any:
+    """What a pressure of the cells adds to the stress, in the place of that of every point."""
+    volume = volume_of(material, u)
+    if volume is None:
+        name = type(material).__name__
+        raise InputError(f"given, {name} keeps no change of volume apart", "pressure")
+    if not isinstance(pressure, ufl.core.expr.Expr | Real) or ufl.shape(pressure) != ():
+        text = f"{reprlib.repr(pressure)} given, a UFL expression of one number needed"
+        raise InputError(text, "pressure")
+    return volume.stress(u, pressure) - volume.stress(u)
 
 
 class Hyperelastic(ABC):

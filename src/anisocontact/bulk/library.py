@@ -50,7 +50,7 @@ def register_material[T: type[Any]](model: T) -> T:
         The class, so that this serves as a decorator.
 
     Raises:
-        InputError: There is a material of that name.
+        InputError: There is a material of that name, or it is no class with an `entry`.
 
     Example:
         >>> register_material(LinearElastic)

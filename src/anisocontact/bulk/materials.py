@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -44,11 +45,16 @@ def small_strain(material: Any) -> bool:
     Returns:
         Whether it does.
 
+    Raises:
+        InputError: It is no material.
+
     Example:
         >>> from anisocontact.bulk import make_material
         >>> small_strain(make_material("neo-hookean", E=1.0, nu=0.3))
         False
     """
+    if not hasattr(material, "linear"):
+        raise InputError(f"{reprlib.repr(material)} given, a material needed", "material")
     of_law = material.linear or getattr(material, "strain", "") == "small"
     return bool(getattr(material, "small_strain", of_law))
 

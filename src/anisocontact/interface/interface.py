@@ -150,6 +150,7 @@ class Interface(Remade):
             raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
         return as_state(r["state"], self.dtype)
 
+    @typed
     def update(
         self,
         state: State,
@@ -174,7 +175,7 @@ class Interface(Remade):
 
         Raises:
             InputError: Directions lie on the slave, and it has points alone; points that are not
-                those of the states; or a time step that is none.
+                those of the states; a time step that is none; or arguments of other types.
         """
         x = points(x, 3, rows=len(state))
         if not 0.0 <= dt < np.inf:

@@ -172,13 +172,15 @@ def raw_state(state: State) -> npt.NDArray[np.uint8]:
         Their bytes, (n, bytes of a state).
 
     Raises:
-        InputError: It is no array of states.
+        InputError: It is no array of states, one a row.
 
     Example:
         >>> raw_state(np.zeros(3, dtype=STATE)).shape == (3, STATE.itemsize)
         True
     """
     fields = getattr(getattr(state, "dtype", None), "fields", None) or {}
-    if any(fields.get(name) != place for name, place in (STATE.fields or {}).items()):
+    if np.ndim(state) != 1 or any(
+        fields.get(name) != place for name, place in (STATE.fields or {}).items()
+    ):
         raise InputError("no states given, those that a response has are needed", "state")
     return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), state.dtype.itemsize)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.kinds import entry_of
 from anisocontact.base.strategies import AUTO, add_strategy, strategy_entry
+from anisocontact.base.typed import typed
 from anisocontact.solver.strategies.condensed.strategy import CondensedStrategy
 from anisocontact.solver.strategies.direct import DirectStrategy
 from anisocontact.solver.strategies.iterative.strategy import IterativeStrategy
@@ -28,16 +30,23 @@ def register_strategy[T: type[Strategy]](strategy: T) -> T:
         The class, so that this serves as a decorator.
 
     Raises:
-        InputError: There is a strategy of that name.
+        InputError: There is a strategy of that name, or it is no class with an `entry` and all that
+            a `Strategy` has.
 
     Example:
         >>> register_strategy(DirectStrategy)
         Traceback (most recent call last):
         anisocontact.base.errors.InputError: strategy: 'direct' is registered already
     """
-    add_strategy(strategy.entry)
-    _STRATEGIES.append(strategy())
+    entry_of(strategy, "strategy")
+    _add(strategy())
     return strategy
+
+
+@typed
+def _add(strategy: Strategy) -> None:
+    add_strategy(strategy.entry)
+    _STRATEGIES.append(strategy)
 
 
 @dataclass(frozen=True)
