@@ -56,6 +56,10 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: make_directions("polar", axis=((0, True, 0), (0, 0, 1))),
         "axis: ((0, True, 0), (0, 0, 1)) given, a point and a direction",
     ),
+    "axis with true of NumPy among numbers": (
+        lambda: make_directions("polar", axis=((0, np.True_, 0), (0, 0, 1))),
+        "axis: ((0, np.True_, 0), (0, 0, 1)) given, a point and a direction",
+    ),
     "axis of words": (lambda: make_directions("polar", axis=(("a",) * 3,) * 2), "axis: (('a', 'a'"),
     "no pitch": (
         lambda: make_directions("spiral", axis=AXIS, pitch=0),

@@ -14,9 +14,9 @@ import basix.ufl
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.contact import Contact
-from anisocontact.interface import Interface
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Model
+from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import ContactProblem
 from anisocontact.surfaces import make_surface
 
@@ -206,5 +206,25 @@ def test_a_contact_that_is_given_twice_is_one_line(given):
     model, low = Model.of(given.space, {"pad.sole": given.bottom}), _interface(-0.1)
     one, again, other = (Contact(model, "pad.sole", plate) for plate in (low, low, _interface()))
     ContactProblem(form, u, contacts=[one, other])
+    with pytest.raises(InputError, match="is given twice"):
+        ContactProblem(form, u, contacts=[one, again])
     with pytest.raises(InputError, match=r"^contacts: contact 'pad\.sole' is given twice$"):
         ContactProblem(form, u, contacts=[one, other, again])
+
+
+def test_contacts_are_the_same_by_their_slave_and_their_master():
+    """Not by their laws: another slave on one surface, and another master, are other contacts."""
+    upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+    lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
+    model, plate = build_box({"block": upper, "base": lower}), _interface(-1.0)
+    friction = Friction(coefficients=0.3)
+    laws = [ContactLaw(plate.normal, Adhesion(stiffness=k), friction) for k in (1, 2)]
+    on_plate = Contact(model, "base.bottom", plate)
+    assert not on_plate.same_pair(Contact(model, "block.bottom", plate))
+    pairs = [
+        Contact(model, "block.bottom", f"{body}.top", law)
+        for body, law in zip(["base"] * 2, laws, strict=True)
+    ]
+    assert pairs[0].same_pair(pairs[1])
+    assert not pairs[0].same_pair(Contact(model, "base.top", "block.bottom", laws[0]))
+    assert not pairs[0].same_pair(on_plate)

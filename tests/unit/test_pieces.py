@@ -13,6 +13,8 @@ from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, Model, make_shape
+from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.described import SAME
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.pieces import unjoined_bodies
 from anisocontact.solver import Problem, Solver, Step
@@ -22,17 +24,27 @@ from anisocontact.surfaces import make_surface
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 
 
-def _block(gap: float = 0.0) -> Model:
-    """A body that is two cubes on each other, two by two cells each, which share no node."""
+def _arrays(gap: float = 0.0, halves: bool = False) -> MeshArrays:
+    """A body that is two cubes on each other, two by two cells each, which share no node.
+
+    The upper half of the upper one is a body of its own if `halves`.
+    """
     shapes = [
         make_shape("box", origin=(0, 0, z), size=(1, 1, 1), cells=(2, 2, 2)) for z in (0, 1 + gap)
     ]
     parts = merge([Body(name, shape).arrays() for name, shape in zip("ab", shapes, strict=True)])
     names = {"bottom": "a.bottom", "low": "a.top", "high": "b.bottom", "top": "b.top"}
     facets = {f"block.{name}": parts.facets[of] for name, of in names.items()}
-    return Model.from_arrays(
-        replace(parts, bodies={"block": np.arange(len(parts.cells))}, facets=facets)
-    )
+    high = parts.points[parts.cells].mean(axis=1)[:, 2] > (1.5 if halves else np.inf)
+    named = {"block": np.flatnonzero(~high), **({"head": np.flatnonzero(high)} if halves else {})}
+    if halves:
+        facets["head.top"] = facets.pop("block.top")
+    return replace(parts, bodies=named, facets=facets)
+
+
+def _block(gap: float = 0.0, halves: bool = False) -> Model:
+    """The model of these."""
+    return Model.from_arrays(_arrays(gap, halves))
 
 
 def _problem(model: Model, slave: str = "block.bottom") -> Problem:
@@ -56,6 +68,15 @@ def test_pieces_are_bodies_of_their_own() -> None:
     assert [free.body.name for free in problem.stabilisation.loose] == [lower.name]
 
 
+def test_a_body_beside_a_piece_of_another_is_no_whole() -> None:
+    """The upper half of the upper cube shares nodes with one of two pieces of the block."""
+    both = _block(halves=True)
+    assert [body.name for body in bodies(both)] == [
+        "block, the piece around (0.5, 0.5, 0.5)",
+        "block + head, the piece around (0.5, 0.5, 1.5)",
+    ]
+
+
 def test_a_piece_that_nothing_holds_is_refused() -> None:
     """A part of the mesh that no support, contact or tie has to do with has no equilibrium."""
     said = r"step 'press': body 'block, the piece around \(0.5, 0.5, 0.5\)' is free to move"
@@ -63,13 +84,25 @@ def test_a_piece_that_nothing_holds_is_refused() -> None:
         Solver(_problem(_block(0.1), "block.high"), [PRESS])
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.1])
+@pytest.mark.parametrize("gap", [0.0, 0.1 * SAME, 100.0 * SAME, 0.1])
 def test_nodes_that_were_not_joined_are_told(gap: float) -> None:
     """Nine nodes of the upper cube are at the places of others; with a gap none is."""
     cautions = Solver(_problem(_block(gap)), [PRESS]).cautions
     found = [line for line in cautions if "2 pieces that share no node" in line]
-    assert len(found) == (gap == 0.0)
+    assert len(found) == (gap < SAME)
     assert all("9 nodes of one lie on nodes of another" in line for line in found)
+
+
+def test_a_slit_in_a_piece_is_no_seam_between_pieces() -> None:
+    """Nodes of its two sides are at one place, and of one piece."""
+    parts = _arrays(0.1)
+    slit = np.flatnonzero((parts.points == (0.5, 0.0, 0.5)).all(axis=1))
+    left = parts.points[parts.cells].mean(axis=1)[:, 0] < 0.5
+    cells = np.where(left[:, None] & (parts.cells == slit), len(parts.points), parts.cells)
+    points = np.concatenate([parts.points, parts.points[slit]])
+    model = Model.from_arrays(replace(parts, points=points, cells=cells))
+    assert len(bodies(model)) == 2
+    assert not unjoined_bodies(model)
 
 
 def test_pieces_that_are_meant_to_touch_are_not_doubtful() -> None:
