@@ -214,6 +214,31 @@ def test_a_slip_ellipse_that_makes_points_jump_is_told(tmp_path, capsys, angle, 
     assert ("points stick there and jump" in capsys.readouterr().out) is said
 
 
+@pytest.mark.parametrize(
+    ("stiffness", "rule", "said"),
+    [
+        ("[1e4, 3e4]", "explicit", True),
+        ("[1.6e5, 1e4]", "explicit", False),
+        ("[1e4, 3e4]", "maximum-dissipation", False),
+    ],
+)
+def test_a_force_that_turns_where_sliding_begins_is_told(tmp_path, capsys, stiffness, rule, said):
+    """The sliding force B F T is the trial force T turned, docs/theory/errata.md.
+
+    With coefficients 0.4 and 0.1 it is not for stiffnesses of 16 to one.
+    """
+    axes = 'directions = {{ kind = "constant", vector = [1, 0, 0] }}'
+    friction = f'coefficients = [0.4, 0.1], sliding_rule = "{rule}", {axes}'
+    text = BLOCK.replace("coefficients = 0", friction)
+    text = text.replace(
+        "friction =", f"adhesion = {{{{ stiffness = {stiffness}, {axes} }}}}\nfriction ="
+    )
+    case = tmp_path / "case.toml"
+    case.write_text(text.format(gap=0.0, penalty=1e4, way=-0.006))
+    assert main(["check", str(case)]) == 0
+    assert ("turn at once where sliding begins" in capsys.readouterr().out) is said
+
+
 @pytest.mark.parametrize("gap", [0.0, 0.5])
 def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     """Springs in series, E/L and eps: the penetration is 1/(1 + eps L/E) of the approach.
