@@ -12,16 +12,19 @@ from anisocontact.bulk import LinearElastic
 from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, Model, make_shape
+from anisocontact.mesh import Body, BoxSpec, Model, build_box, make_shape
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.described import SAME
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.pieces import unjoined_bodies
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import CoupledFace, Problem, Solver, Step
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+#: Two cubes and where they begin along x.
+PLACES = {"left": 0, "right": 2}
 
 
 def _arrays(gap: float = 0.0, halves: bool = False) -> MeshArrays:
@@ -109,3 +112,33 @@ def test_pieces_that_are_meant_to_touch_are_not_doubtful() -> None:
     """Nodes of contacts and ties lie on each other by intent."""
     model = _block()
     assert not unjoined_bodies(model, [model.facet_nodes("block.low")])
+
+
+def test_what_contacts_meet_is_as_loose_as_what_meets_it() -> None:
+    """A base that only the block above it touches, as the master of the one contact."""
+    upper, lower = (
+        BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1)),
+        BoxSpec((-1, -1, -1), (3, 3, 1), (1,) * 3),
+    )
+    model = build_box({"block": upper, "base": lower})
+    material = LinearElastic(E=1e3, nu=0.3)
+    contact = Contact(model, "block.bottom", "base.top", Friction(coefficients=0.3))
+    problem = Problem(model, {"block": material, "base": material}, [contact])
+    problem.begin(PRESS)
+    assert [free.body.name for free in problem.stabilisation.loose] == ["base"]
+
+
+def test_bodies_that_follow_one_rigid_body_are_loose_as_one() -> None:
+    """Two cubes under a head that nothing holds move with it, not each on its own."""
+    boxes = {name: BoxSpec((x, 0, 0), (1, 1, 1), (1, 1, 1)) for name, x in PLACES.items()}
+    model = build_box(boxes)
+    surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    laws = NormalLaw(penalty=1e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
+    contacts = [Contact(model, f"{name}.bottom", Interface(surface, *laws)) for name in PLACES]
+    head = RigidBody("head", (1.5, 0.5, 1.0), free=True)
+    faces = [CoupledFace(f"{name}.top", head) for name in PLACES]
+    materials = {name: LinearElastic(E=1e3, nu=0.3) for name in PLACES}
+    problem = Problem(model, materials, contacts, coupled=faces)
+    free = {"head": {"z": None, "x": None}}
+    problem.begin(Step("press", 1, motion=free, load={"head": {"z": -1.0}}))
+    assert [free.body.name for free in problem.stabilisation.loose] == ["left + right"]
