@@ -17,6 +17,7 @@ from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import Contact, coarse_slaves
 from anisocontact.contact.hints import faceted, overlapping
+from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import (
@@ -110,6 +111,49 @@ def test_facets_as_flat_as_an_interference_are_told(order, count, said):
     if said:
         height = float(line.partition("arcs over their facets are ")[2].partition(" ")[0])
         assert height == pytest.approx(sum(heights), rel=1e-2)
+
+
+@pytest.mark.parametrize("straight", [False, True])
+def test_arcs_over_facets_that_bend_are_a_quartic_high(straight):
+    """Facets of order 2 on a circle: `x^2 (a^2 - x^2) / 8 r^3` is at most `a^4 / 32 r^3`, a half the
+    length; with middle nodes on the chords they are flat, `a^2 / 2 r` below their arcs.
+
+    Tolerance 3 %: the next powers of a / r = pi / 32.
+    """
+    count, radius = 8, 2.0
+    shape = make_shape(
+        "annulus", inner=1.0, outer=radius, start_deg=0.0, end_deg=90.0, cells=(1, count), order=2
+    )
+    model = build_mesh([Body("ring", shape)], idealisation=PlaneStrain())
+    half = radius * np.pi / (4.0 * count)
+    expected = half**4 / (32.0 * radius**3)
+    if straight:
+        x = np.array(model.positions)
+        ends, edge = x[:, :2], np.hypot(x[:, 0], x[:, 1]) > radius - 1e-6
+        angle = np.arctan2(ends[:, 1], ends[:, 0]) / (np.pi / (4.0 * count))
+        middle = edge & (np.abs(angle % 2.0 - 1.0) < 1e-6)
+        x[middle] *= np.cos(np.pi / (4.0 * count))
+        model.__dict__["positions"] = x
+        expected = half**2 / (2.0 * radius)
+    assert sagitta(model, "ring.outer") == pytest.approx(expected, rel=3e-2)
+
+
+def test_round_cells_are_not_told_to_be_round():
+    """A disc and a ring of order 2 that do not match, which overlap by 6e-6 of the radius."""
+    bodies = [
+        Body("disc", make_shape("disc", radius=1.0, part="quarter", cells=(16, 3), order=2)),
+        Body(
+            "ring",
+            make_shape(
+                "annulus", inner=1.0, outer=3.0, start_deg=-90.0, end_deg=0.0, cells=(8, 9), order=2
+            ),
+        ),
+    ]
+    model = build_mesh(bodies, idealisation=PlaneStrain())
+    contact = Contact(model, "disc.outer", "ring.inner", Friction(coefficients=0.3))
+    (line,) = overlapping([(contact, "fit", contact.facet_size)], "adjust = true")
+    assert "arcs over their facets" in line
+    assert line.endswith("it is wrong by as much, finer facets mend it")
 
 
 PAIR = """

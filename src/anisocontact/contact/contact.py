@@ -76,7 +76,7 @@ class Contact(Pass):
         space: Vector space of the displacement of nodes.
         master: What the slave points meet.
         slave_points: Where the laws are evaluated.
-        sagitta: Height of the arcs over flat facets of slave and master, length.
+        sagitta: Height of the arcs over the facets of slave and master, length.
         nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.

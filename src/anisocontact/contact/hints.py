@@ -157,10 +157,10 @@ def faceted(contacts: Sequence[Contact]) -> list[str]:
         if not 0.0 < UNEVENNESS * peak < made or any(comm.allgather(_match(one))):
             continue
         found.append(
-            f"contact of {one.name}: arcs over its flat facets are {one.sagitta:.3g} high, which "
+            f"contact of {one.name}: arcs over its facets are {one.sagitta:.3g} high, which "
             f"bodies as stiff as these close under {made:.3g}, and the largest pressure, as a mean "
             f"over some facets, is {peak:.3g}: pressures at points are those of the meshes, "
-            "resultants are not; round cells (order 2), finer facets or nodes that match mend it"
+            f"resultants are not; {_finer(one)} or nodes that match mend it"
         )
     return found
 
@@ -301,20 +301,26 @@ def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[
             f"{name}: the bodies overlap by {overlap.depth:.3g} at the start, "
             f"{100.0 * overlap.depth / size:.2g}% of the facet size, at {overlap.count} points, "
             f"most at ({place}); the first increment pushes them apart, {cure} lets them just touch"
-            + _flat(contact.sagitta, overlap.depth)
+            + _flat(contact, overlap.depth)
         )
     return found
 
 
-def _flat(sagitta: float, depth: float) -> str:
-    """What flat facets do to an overlap that is meant; empty if next to nothing."""
+def _flat(contact: Contact, depth: float) -> str:
+    """What facets beside their arcs do to an overlap that is meant; empty if next to nothing."""
+    sagitta = contact.sagitta
     if sagitta <= FLAT * depth:
         return ""
     return (
         f"; arcs over their facets are {sagitta:.3g} high, {100.0 * sagitta / depth:.0f}% of that: "
-        "where an interference is meant it is wrong by as much, round cells (order 2) or finer "
-        "facets mend it"
+        f"where an interference is meant it is wrong by as much, {_finer(contact)} mend it"
     )
+
+
+def _finer(contact: Contact) -> str:
+    """What brings facets nearer to their arcs."""
+    round_now = contact.space.element.basix_element.degree > 1
+    return "finer facets" if round_now else "round cells (order 2) or finer facets"
 
 
 def warn_of(contacts: Sequence[Contact]) -> None:

@@ -1,4 +1,4 @@
-"""How far flat facets are beside the curved surface that they stand for."""
+"""How far facets are beside the curved surface that they stand for."""
 
 from __future__ import annotations
 
@@ -17,15 +17,20 @@ from anisocontact.mesh import Model
 #: Cosine of the angle of a facet and the mean at its vertex below which that is an edge: one of
 #: the body, not of a mesh that stands for something round.
 EDGE = 0.9
+#: Height of the arc over a facet of order 2 that bends, over that over a flat one with the same
+#: angles at its vertices: a quartic without value at its nodes instead of a parabola.
+BENT = {"quad9": 0.25, "tri6": 1.0 / 3.0}
 #: Corners of reference facets.
 CORNERS = {3: np.array([[0.0, 0], [1, 0], [0, 1]]), 4: np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])}
 
 
 def sagitta(model: Model, group: str) -> float:
-    """Height of the arcs over the facets of a group, of which facets of round cells have none.
+    """Height of the arcs over the facets of a group, of which those of round cells are far lower.
 
     An arc through the vertices of a facet of normal n, with the normal m at a vertex, is
     `(m - n) . (c - v) / 2` above its middle c, v the vertex; m is the mean over the facets there.
+    Over a facet that bends, whose middle nodes are on the arc, it is a share of that: on a line
+    `x^2 (a^2 - x^2) / 8 R^3`, at most `a^4 / 32 R^3`, a half the length and R the radius.
 
     Args:
         model: Mesh with the group.
@@ -63,4 +68,9 @@ def _heights(mesh: FacetMesh, x: Floats) -> Floats:
     smooth = (mean * normals).sum(axis=2) > EDGE
     arms = x[nodes].mean(axis=1)[:, None] - x[nodes]
     heights = 0.5 * np.abs(((mean - normals) * arms).sum(axis=2))
-    return np.asarray(np.where(smooth, heights, 0.0).mean(axis=1))
+    heights = np.where(smooth, heights, 0.0).mean(axis=1)
+    if shapes.order == 1:
+        return np.asarray(heights)
+    middle = np.einsum("k,mkx->mx", shapes.at(shapes.middle[None])[0][0], x[mesh.nodes])
+    bulge = np.linalg.norm(middle - x[nodes].mean(axis=1), axis=1)
+    return np.asarray(np.where(heights < bulge, BENT[mesh.topology] * heights, heights))
