@@ -115,8 +115,8 @@ def test_facets_as_flat_as_an_interference_are_told(order, count, said):
 
 @pytest.mark.parametrize("straight", [False, True])
 def test_arcs_over_facets_that_bend_are_a_quartic_high(straight):
-    """Facets of order 2 on a circle: `x^2 (a^2 - x^2) / 8 r^3` is at most `a^4 / 32 r^3`, a half the
-    length; with middle nodes on the chords they are flat, `a^2 / 2 r` below their arcs.
+    """Facets of order 2 on a circle: `x^2 (a^2 - x^2) / 8 r^3` is at most `a^4 / 32 r^3`, a half
+    the length; with middle nodes on the chords they are flat, `a^2 / 2 r` below their arcs.
 
     Tolerance 3 %: the next powers of a / r = pi / 32.
     """

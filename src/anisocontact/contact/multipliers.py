@@ -348,13 +348,15 @@ class Multipliers:
     def _norms(self, change: Floats, step: ContactTrial) -> tuple[float, float]:
         """Norms over the area of a change of the multipliers and of the tractions.
 
-        Tractions are at least what rounding leaves of them where bodies come to rest without force.
+        Tractions are at least what rounding leaves of them where bodies come to rest without force,
+        and what makes roundings of positions, by the penalty, a share of them that is good enough.
         """
         traction, areas = step.answer.traction, step.areas
-        squares = [areas @ (change**2).sum(axis=1), areas @ (traction**2).sum(axis=1), areas.sum()]
-        changed, carried, whole = np.sqrt(self._comm.allreduce(np.array(squares)))
-        rounding = ROUNDING * self._penalties[0] * self.factors[0] * self._limit * whole
-        return float(changed), float(max(carried, rounding))
+        least = np.maximum(ROUNDING * self._limit, ROUNDED / SHARE * step.far)
+        sizes = [(change**2).sum(axis=1), (traction**2).sum(axis=1), least**2]
+        squares = areas @ np.stack(sizes, axis=1)
+        changed, carried, rounded = np.sqrt(self._comm.allreduce(squares))
+        return float(changed), float(max(carried, self._penalties[0] * self.factors[0] * rounded))
 
 
 class NotHeldError(RuntimeError):

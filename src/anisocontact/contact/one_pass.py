@@ -251,12 +251,14 @@ class Pass:
         """Forces that would move every point of the trial to the origin, norm over this rank.
 
         The machine's precision times this is the round-off of the contact forces: positions are
-        known to a share of their distance from the origin.
+        known to a share of their distance from the origin. Points that have met their master count
+        where the trial leaves them open as well: that share says which of them do.
         """
         distance = np.linalg.norm(self.current.points, axis=1)
         if self.master.body is not None:
             distance += np.linalg.norm(self.master.body.position)
-        return float(np.linalg.norm(self.answer.stiffness * distance))
+        least = self.trials.penalty * self.current.areas * self.meeting()
+        return float(np.linalg.norm(np.maximum(self.answer.stiffness, least) * distance))
 
     def commit(self) -> None:
         """Make the trial the history."""

@@ -75,6 +75,12 @@ class Trials:
         return self._own is not None
 
     @property
+    def penalty(self) -> float:
+        """Normal penalty that trials are answered with now, stress/length."""
+        given = self.interface.penalties()[0]
+        return float(given if self._own is None else given * self._own.factors[0])
+
+    @property
     def does_work(self) -> bool:
         """Whether tangential forces do work on elastic slip: those that are multipliers do none."""
         return self._own is None or not self._own.tangential
