@@ -50,7 +50,8 @@ class HistoryTable:
         if not self._size:
             self._path.unlink(missing_ok=True)
             return
-        header, *rows = (self._path.is_file() and _cells(self._path)) or [[]]
+        found = _cells(self._path) if self._path.is_file() else []
+        header, *rows = found or [[]]
         if len(rows) < self._rows:
             raise InputError(
                 f"'{self._path}' has {len(rows)} rows, the run that is to go on has written "
