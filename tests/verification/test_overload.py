@@ -35,16 +35,22 @@ STEPS = [
 ]
 
 
-def _problem(post: bool) -> Problem:
-    """A free block on a block in plane strain, at slave nodes, maybe in front of a post."""
+def _problem(post: bool, swapped: bool = False) -> Problem:
+    """A free block on a block in plane strain, at slave nodes, maybe in front of a post.
+
+    Args:
+        post: Whether there is one.
+        swapped: Whether the free block is the master, at points.
+    """
     block = make_shape("rectangle", origin=(-0.5, 0), size=(1, 0.5), cells=(4, 2))
     base = make_shape("rectangle", origin=(-2, -1), size=(4, 1), cells=(8, 2))
     bodies = [Body("block", block), Body("base", base)]
     model = build_mesh(bodies, idealisation=PlaneStrain())
     laws = NormalLaw(penalty=1e4), Adhesion(stiffness=1e4)
     law = ContactLaw(*laws, Friction(coefficients=MU))
-    options = {"mortar": True, "augmentation": Augmentation()}
-    contacts = [Contact(model, "block.bottom", "base.top", law, **options)]
+    options = {"mortar": not swapped, "augmentation": None if swapped else Augmentation()}
+    sides = ("base.top", "block.bottom") if swapped else ("block.bottom", "base.top")
+    contacts = [Contact(model, *sides, law, **options)]
     if post:
         plane = make_surface("plane", point=(0.55, 0, 0), normal=(-1, 0, 0))
         smooth = Interface(plane, *laws, Friction(coefficients=0.0))
@@ -66,6 +72,24 @@ def test_a_load_beyond_friction_ends_the_run_soon() -> None:
     with pytest.raises(StoppedError, match=r"and friction holds 0\.(3|29)"):
         list(Solver(_problem(False), STEPS).run(on_cut=cuts.append))
     assert len(cuts) <= 2
+
+
+def test_friction_holds_as_much_of_a_master() -> None:
+    """The free block as the master, under half of the pull that friction holds.
+
+    Requirement: the limit at the end of the step is mu times the force that presses, as where it is
+    the slave, and what friction holds is not told. Source: Coulomb. Tolerance: 5 %, of the
+    pressure that the pull takes off and puts on, which points of the other side see differently.
+    """
+    problem = _problem(False, swapped=True)
+    for accepted in Solver(problem, STEPS).run():
+        if accepted.step == "pull":
+            break
+    assert not too_much_load(problem, 0.5, 0.25)
+    (found,) = too_much_load(problem, 1.0, 0.25)
+    held = re.search(r"friction holds ([\d.]+)", found.text)
+    assert held is not None
+    assert float(held[1]) == pytest.approx(MU, rel=0.05)
 
 
 def test_a_body_pulled_beyond_friction_comes_to_rest_at_a_post() -> None:
