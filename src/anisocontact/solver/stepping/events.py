@@ -132,9 +132,14 @@ class EventWatch:
             return None
         return self._contact
 
-    def overload(self) -> None:
-        """Friction does not hold the loads at the end of the part: the event comes before it."""
-        self.objects, self._beyond = True, _Beyond(self._end, _SLID)
+    def overload(self) -> bool:
+        """Friction does not hold the loads at the end of the part: the event comes before it.
+
+        Returns:
+            Whether a smaller part is to be tried; none where friction is at its limit by now.
+        """
+        self.objects, self._beyond = self._part > _ROUNDING, _Beyond(self._end, _SLID)
+        return self.objects
 
     def begin(self, part: float, end: float) -> None:
         """A part is tried.

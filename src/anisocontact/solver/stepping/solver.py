@@ -270,8 +270,8 @@ class Solver:
             events.begin(pace.part, pace.end)
             slides, end = events.slides(), _whole(pace.increment, pace.end) / step.increments
             now = self._reached(step)
-            if slides is not None and too_much_load(self.problem, end, now, 1.0, slides):
-                events.overload()
+            overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
+            if overloaded and events.overload():
                 continue
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
