@@ -117,6 +117,29 @@ def test_rigid_plane(angle: float, axis: float, tmp_path: Path) -> None:
     assert sum(part.iterations for part in accepted) <= 80
 
 
+def test_a_limit_at_the_end_of_an_increment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Friction holds no load any more, that of now included, from 0.4 of the tilt on.
+
+    Requirement: the event is found there, in as many looks at the limit as halve an increment down
+    to rounding (30) and those of the increments before; parts were halved without end.
+    """
+    looked: list[float] = []
+
+    def beyond(problem: Any, end: float, now: float, *_: Any) -> bool:
+        looked.append(end)
+        assert len(looked) < 60
+        return now > 0.39
+
+    monkeypatch.setattr("anisocontact.solver.stepping.solver.too_much_load", beyond)
+    text = incline(0, 0, nu=0.0, table=PLANE, master="table", held="")
+    _, accepted, cuts, _ = slid(tmp_path / "case.toml", text)
+    assert not cuts
+    assert accepted[-1].event
+    assert accepted[-1].time - accepted[-2].time < 1e-8
+
+
 @pytest.mark.parametrize(("angle", "axis"), [(0, 0), pytest.param(45, 25, marks=pytest.mark.slow)])
 def test_elastic_foundation(angle: float, axis: float, tmp_path: Path) -> None:
     """The limit on facets that do not match; what smaller parts do not meet is met later."""
