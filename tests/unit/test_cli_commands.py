@@ -82,6 +82,23 @@ def test_a_run_imports_only_what_it_uses(unpictured, tmp_path):
     assert done.stdout.splitlines()[-2:] == ["0 []", "True"]
 
 
+def test_finite_elements_import_no_compiler():
+    """What compiles forms is imported where one is compiled, whole, and not to find one."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    code = (
+        "import sys, anisocontact.base.fenicsx; "
+        "heavy = {'pycparser', 'ffcx.codegeneration.C', 'ffcx.codegeneration.lnodes'}; "
+        "print(sorted(heavy & set(sys.modules))); "
+        "import ffcx.compiler, ffcx.codegeneration.C as C; "
+        "from ffcx.codegeneration.C import file_template; "
+        "print(C.file.file_template is file_template, file_template.libraries)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert first == "[]"
+    assert second.startswith("True [")
+
+
 @pytest.mark.parametrize("arguments", [[], ["walk"], ["run"], ["run", "a", "b"], ["info", "--jso"]])
 def test_wrong_arguments(capsys, arguments):
     assert main(arguments) == 2

@@ -16,7 +16,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from tests.verification import mixed_problems as mixed
 from tests.verification.mixed_problems import PRESS_AND_DRAG, WAYS, Held, on_plate, pad
 
-from anisocontact.base.fenicsx import basix, fem, fem_petsc, ufl
+from anisocontact.base.fenicsx import basix, fem, ufl
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -24,6 +24,7 @@ from anisocontact.mesh import Model
 from anisocontact.solver import ContactProblem
 
 import dolfinx.mesh
+from dolfinx.fem import petsc as fem_petsc
 
 ROOT = Path(__file__).parents[2]
 

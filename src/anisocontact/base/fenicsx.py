@@ -2,7 +2,8 @@
 
 Every call whose name or signature differs between DOLFINx releases sits here, and so does the
 order of the imports: in the wheel `dolfinx-solver-real` the compiled modules need mpi4py's MPI to
-be loaded before them.
+be loaded before them. `dolfinx.fem.petsc` has a parser of C imported for those who use Numba; what
+is called of it stands here.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import MachineError
+from anisocontact.base.import_hooks import without_its_package
 
 try:
     from mpi4py import MPI  # isort: skip
@@ -28,11 +30,13 @@ try:
     import basix.ufl
     import ufl as _ufl
 
+    # FFCx' generator of code, which is imported where a form is compiled, is asked for one list.
+    without_its_package("ffcx.codegeneration.C.file_template")
     import dolfinx
-    from dolfinx import cpp, fem, graph, io
+    from dolfinx import cpp, fem, graph, io  # type: ignore[attr-defined]
     from dolfinx import la as _la
     from dolfinx import mesh as dmesh
-    from dolfinx.fem import petsc as fem_petsc
+    from dolfinx.la import petsc as _la_petsc
     from petsc4py import PETSc as _PETSc
 except ImportError as missing:
     raise ImportError(
@@ -264,7 +268,8 @@ def create_stiffness(form: Any) -> Mat:
     Rows that are emptied later keep their place in the pattern, so that one symbolic
     factorisation serves a whole run.
     """
-    matrix = fem_petsc.assemble_matrix(form)
+    matrix = cpp.fem.petsc.create_matrix(form._cpp_object, None)
+    assemble_into(matrix, form)
     matrix.assemble()
     matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
     return matrix
@@ -272,25 +277,30 @@ def create_stiffness(form: Any) -> Mat:
 
 def create_force(form: Any) -> Vec:
     """Vector for `assemble_force` of a linear form, with ghosts."""
-    return fem_petsc.create_vector(form.function_spaces[0])
+    dofmap = form.function_spaces[0].dofmap
+    return _la_petsc.create_vector([(dofmap.index_map, dofmap.index_map_bs)])
 
 
 def assemble_force(form: Any, out: Vec) -> None:
     """Write the vector of a linear form, ghosts added up, into one of `create_force`."""
     with out.localForm() as local:
         local.set(0.0)
-    fem_petsc.assemble_vector(out, form)
+        fem.assemble_vector(local.array_w, form)
     out.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
 
 
 def assemble_into(matrix: Mat, form: Any) -> None:
     """Add the matrix of a bilinear form to a matrix of its pattern; not assembled yet."""
-    fem_petsc.assemble_matrix(matrix, form)
+    constants, coefficients = fem.pack_constants(form), fem.pack_coefficients(form)
+    cpp.fem.petsc.assemble_matrix(matrix, form._cpp_object, constants, coefficients, [])
+    matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
 
 
 def prescribe(residual: Vec, bcs: Sequence[Any], x: Vec) -> None:
     """Write `x - g` into the rows of the residual that Dirichlet conditions prescribe."""
-    fem_petsc.set_bc(residual, bcs, x, -1.0)
+    values, now = residual.array_w, x.array_r
+    for bc in bcs:
+        bc.set(values, now, -1.0)
 
 
 def prescribed_rows(bcs: Sequence[Any]) -> Locals:

@@ -9,7 +9,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 
 #: Modules that have moved into a package: their path of before and that of today. An import by the
@@ -90,3 +90,25 @@ def when_used(name: str) -> None:
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     setattr(sys.modules[package], last, module)
+
+
+def without_its_package(name: str) -> None:
+    """Import a module while the package that it is in is not executed, which takes longer.
+
+    Others find the module as usual, and a later import of the package is a usual one. Nothing is
+    done where there is no such module.
+
+    Args:
+        name: The module.
+    """
+    package = name.rpartition(".")[0]
+    try:
+        around = importlib.util.find_spec(package)
+    except ModuleNotFoundError:
+        return
+    places = around.submodule_search_locations if around else None
+    spec = PathFinder.find_spec(name, places) if places else None
+    if name in sys.modules or spec is None or spec.loader is None:
+        return
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.figure_style import leave_out_descriptions
 from anisocontact.cli.main import DONE
 from anisocontact.cli.output import say
 
@@ -14,6 +15,7 @@ from anisocontact.cli.output import say
 def command(arguments: argparse.Namespace) -> int:
     """Make the report of a folder anew from what is in it."""
     folder = Path(arguments.folder)
+    leave_out_descriptions()
     from anisocontact.results.report import write_report
 
     if (folder / "trace.csv").is_file():

@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+from anisocontact.base.figure_style import leave_out_descriptions
 from anisocontact.case.trace import Trace, load_trace
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import say
@@ -37,6 +38,8 @@ def _drive_into(folder: Path, trace: Trace) -> int:
     for label, interface in trace.compared:
         compared[label], stopped = _driven(interface, trace.load, trace.group)
         message = message or (f"{label}: {stopped}" if stopped else "")
+    if trace.case.output.pictures:
+        leave_out_descriptions()
     summary = write_trace(
         folder,
         history,

@@ -13,6 +13,9 @@ __all__: list[str] = []
 
 def _main() -> None:
     gc.disable()  # there is nothing to be collected in what is imported
+    from anisocontact.base.figure_style import leave_out_descriptions
+
+    leave_out_descriptions()
     from anisocontact.results.report import shape, write_report
 
     vtk = shape.start_vtk()
