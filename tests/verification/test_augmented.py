@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface
@@ -199,6 +200,56 @@ def test_physical_adhesion_stays() -> None:
         np.testing.assert_allclose(traction, -soft * slip, atol=1e-9 * np.abs(traction).max())
         assert np.abs(slip).max() > 1e-2 * SIZE
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-4 * np.linalg.norm(ends[0])
+
+
+@pytest.mark.parametrize("multipliers", [None, "newton", "uzawa"])
+@pytest.mark.parametrize("mortar", [False, True], ids=["points", "nodes"])
+def test_adhesion_along_one_axis_alone(mortar: bool, multipliers: str | None) -> None:
+    """A layer of fibres holds along them and not across: so does a block on it, pushed askew.
+
+    Source: T = -S_1 (s . e_1) e_1 where nothing slips, S_2 = 0, to rounding at every point: across
+    the fibres there is no force at all. Penalties, and multipliers of the pressure alone.
+    """
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2))})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    angle, along = np.pi / 6, 400.0
+    fibres = make_directions("constant", vector=(1, 0, 0), angle=angle)
+    laws = (
+        NormalLaw(penalty=1e5),
+        Adhesion(stiffness=(along, 0.0), directions=fibres),
+        Friction(coefficients=50.0),
+    )
+    way = Augmentation(tangential=False, multipliers=multipliers) if multipliers else None
+    contact = Contact(
+        model, "block.bottom", Interface(plane, *laws), augmentation=way, mortar=mortar
+    )
+    problem = Problem(model, {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}, [contact])
+    press = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.005}})
+    push = Step("push", 2, {"block.top": {"x": 0.004, "y": 0.006}})
+    for _ in Solver(problem, [press, push]).run():
+        pass
+    assert contact.counts()["slip"] == 0
+    first = np.array([np.cos(angle), np.sin(angle), 0.0])
+    traction = contact.last.traction_t
+    expected = -along * np.outer(contact.elastic_slip() @ first, first)
+    np.testing.assert_allclose(traction, expected, atol=1e-12 * np.abs(traction).max())
+    assert np.abs(traction).max() > 0.5
+
+
+@pytest.mark.parametrize("multipliers", ["newton", "uzawa"])
+def test_no_multipliers_of_adhesion_along_one_axis(multipliers: str) -> None:
+    """Multipliers would hold across the fibres too: such adhesion is refused as one of them."""
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (2, 2, 1))})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    fibres = make_directions("constant", vector=(1, 0, 0))
+    law = Interface(
+        plane,
+        NormalLaw(penalty=1e3),
+        Adhesion(stiffness=(0.0, 1e3), directions=fibres),
+        Friction(coefficients=0.3),
+    )
+    with pytest.raises(InputError, match=r"adhesion\.stiffness: 0 along an axis"):
+        Contact(model, "block.bottom", law, augmentation=Augmentation(multipliers=multipliers))
 
 
 def test_units() -> None:

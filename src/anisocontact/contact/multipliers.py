@@ -72,6 +72,12 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
             f'"{law.tangential.model}" given, an augmented contact needs "elastic"',
             "adhesion.model",
         )
+    if not law.tangential.holds_all_ways():
+        raise InputError(
+            "0 along an axis, where nothing is to stick: such adhesion is physical, "
+            "tangential=False needed",
+            "adhesion.stiffness",
+        )
     if law.evolution not in VECTOR_FORMS:
         allowed = " or ".join(f'"{name}"' for name in VECTOR_FORMS)
         raise InputError(

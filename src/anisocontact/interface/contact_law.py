@@ -108,16 +108,28 @@ class AdhesionAndFriction(Remade):
         return series.slip_stiffness(self.adhesion, dt)
 
     def penalty(self) -> float:
-        """Least stiffness of adhesion, stress/length."""
-        return min(self.adhesion.named[1].get("stiffness", [1.0]))
+        """Least stiffness of adhesion along the axes along which it has one, stress/length."""
+        return min(one for one in self._stiffness(1.0) if one > 0.0)
 
     def softness(self) -> Floats:
-        """Least stiffness of adhesion over that along each of its axes, (2,)."""
-        return np.asarray(self.penalty() / np.array(self.adhesion.named[1].get("stiffness", 1.0)))
+        """Least stiffness of adhesion over that along each of its axes, (2,); 1 where it has none.
+
+        Multipliers, which ask for it, have adhesion along both axes: see `holds_all_ways`.
+        """
+        stiffness = np.array(self._stiffness(1.0))
+        return np.asarray(self.penalty() / np.where(stiffness > 0.0, stiffness, self.penalty()))
+
+    def holds_all_ways(self) -> bool:
+        """Whether there is adhesion along both axes."""
+        return min(self._stiffness(1.0)) > 0.0
 
     def stiffest(self) -> float:
         """Largest stiffness of adhesion, stress/length; 0 where it has none."""
-        return max(self.adhesion.named[1].get("stiffness", [0.0]))
+        return max(self._stiffness(0.0))
+
+    def _stiffness(self, none: float) -> list[float]:
+        """Stiffness of adhesion along its axes, or what stands for it in laws without one."""
+        return self.adhesion.named[1].get("stiffness", [none])
 
     def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
         """What the core finds for a batch; arguments as of `PythonLaw.through`."""

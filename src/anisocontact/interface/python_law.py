@@ -144,6 +144,10 @@ class PythonLaw:
         """The law has no stiffness along axes: 1."""
         return np.ones(2)
 
+    def holds_all_ways(self) -> bool:
+        """The law has no axis along which it is known to let go: true."""
+        return True
+
     def stiffest(self) -> float:
         """The law has no stiffness that is known: 0."""
         return 0.0
