@@ -45,7 +45,7 @@ def _near_key(e: ErrorDetails, kind: type[BaseModel]) -> str | None:
 class Section(BaseModel):
     """Base of all tables: fixed keys, nothing converted, every message finished where it arises."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, defer_build=True)
 
     @model_validator(mode="wrap")
     @classmethod

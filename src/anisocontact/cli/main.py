@@ -20,6 +20,8 @@ from anisocontact.base.signals import ended_by_signals
 from anisocontact.cli.output import outputs, say
 
 DONE, INTERNAL, BAD_INPUT, STOPPED = 0, 1, 2, 3
+#: Packages of NumPy that few commands use: SciPy imports all there are.
+_OF_NUMPY = ("f2py", "testing", "polynomial")
 
 _EPILOG = """\
 exit codes: 0 done, 2 bad input (nothing is written), 3 stopped before the end (by a signal, or
@@ -170,7 +172,8 @@ def _run(arguments: argparse.Namespace) -> int:
 def _ended(arguments: argparse.Namespace) -> int:
     """Run a command and say what is wrong; its exit code."""
     try:
-        when_used("numpy.f2py")  # SciPy imports all that NumPy has
+        for name in _OF_NUMPY:
+            when_used(f"numpy.{name}")
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)
         return code
