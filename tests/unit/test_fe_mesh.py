@@ -173,6 +173,18 @@ def test_groups_that_make_no_body(gmsh, tmp_path, rename, words):
         read_gmsh(written(gmsh, tmp_path / "a.msh", rename=rename))
 
 
+def test_surfaces_of_a_solid_alone_make_no_body(gmsh, tmp_path):
+    """Requirement: where volumes have not been meshed this is said, not names of volumes."""
+    from anisocontact.mesh import read_gmsh
+
+    path = written(gmsh, tmp_path / "a.msh", version="2.2")
+    head, tail = path.read_text().split("$Elements\n")
+    rows = [row for row in tail.splitlines()[1:-1] if row.split()[1] == "2"]
+    path.write_text("\n".join([f"{head}$Elements", str(len(rows)), *rows, "$EndElements", ""]))
+    with pytest.raises(InputError, match=r"has no volumes, and surface group 'block\.top'"):
+        read_gmsh(path)
+
+
 def test_body_that_is_not_in_the_file(gmsh, tmp_path):
     """Requirement: an absent group suggests the near one."""
     from anisocontact.mesh import read_gmsh

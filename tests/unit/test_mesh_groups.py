@@ -310,3 +310,53 @@ def test_a_group_of_facets_is_none_of_nodes(tmp_path):
     mesh = file_arrays(path)
     assert sorted(mesh.nodes) == ["box.corner", "box.edge"]
     assert list(mesh.facets) == ["box.below"]
+
+
+def _two_boxes(path, group, lost, wedges):
+    """Boxes "a" and "b" of four hexahedra each, or eight wedges, with a group on top of both.
+
+    The first `lost` facets of the group have nodes of their own, which lie on those of the cells.
+    """
+    meshio = pytest.importorskip("meshio")
+    x, y = (k.reshape(-1) for k in np.mgrid[0:3.0, 0:3.0])
+    one = np.concatenate([np.stack([x, y, 0 * x + z], axis=1) for z in (0.0, 1.0)])
+    points = np.concatenate([one, one + np.array([5, 0, 0])])
+    quads = np.array([[k, k + 3, k + 4, k + 1] for k in (0, 1, 3, 4)])
+    flat = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]) if wedges else quads
+    kinds = ("wedge", "triangle") if wedges else ("hexahedron", "quad")
+    cells = np.hstack([flat, flat + 9])
+    top = np.concatenate([flat + 9, flat + 27])
+    top[:lost] += len(points)
+    blocks = [(kinds[0], cells), (kinds[0], cells + 18), (kinds[1], top)]
+    numbers = [np.full(len(rows), k) for k, (_, rows) in enumerate(blocks, 1)]
+    meshio.Mesh(
+        np.concatenate([points, points]),
+        blocks,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data={"a": np.array([1, 3]), "b": np.array([2, 3]), group: np.array([3, 2])},
+    ).write(path, file_format="gmsh22", binary=False)
+    return path
+
+
+@pytest.mark.parametrize("wedges", [False, True])
+def test_facets_with_nodes_of_their_own_are_told(tmp_path, wedges):
+    """Requirement: a group does not lose the facets whose nodes are not those of the cells.
+
+    A surface that is no body's may stand in the file, and bodies may be left out of it.
+    """
+    count = 16 if wedges else 8
+    path = _two_boxes(tmp_path / "m.msh", "top", 3, wedges)
+    said = f"'top': 3 of {count} facets have nodes that no cell has; merge nodes"
+    with pytest.raises(InputError, match=said):
+        file_arrays(path)
+    with pytest.raises(InputError, match=said):
+        file_arrays(path, ["b"])
+    _two_boxes(path, "a.top", count, wedges)
+    with pytest.raises(InputError, match=f"'a.top': {count} of {count} facets have nodes"):
+        file_arrays(path)
+    _two_boxes(path, "tool", count, wedges)
+    assert file_arrays(path).facets == {}
+    _two_boxes(path, "top", 0, wedges)
+    assert list(file_arrays(path).facets) == ["a.top", "b.top"]
+    alone = file_arrays(path, ["b"]).facets
+    assert {name: len(facets) for name, facets in alone.items()} == {"b.top": count // 2}

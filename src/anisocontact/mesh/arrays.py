@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -168,6 +168,30 @@ def check_boundary(mesh: MeshArrays, name: str, counts: Ints) -> None:
         raise InputError(
             f"facet group {name!r}: {inner} of {total} facets lie inside the mesh; "
             "a group must lie on the boundary of a body (bodies in contact share no nodes)"
+        )
+
+
+def check_has_cells(name: str, lost: int, total: int, bodies: Collection[str]) -> None:
+    """Refuse a group of facets of which some have nodes that no cell of the file has.
+
+    All of its facets may: those of a surface that bounds no body, if the name does not say which.
+
+    Args:
+        name: Name of the group in the file.
+        lost: How many of its facets have such nodes.
+        total: How many facets it has.
+        bodies: Names of the bodies that are taken.
+
+    Raises:
+        InputError: Names the group and says how many facets these are.
+
+    Example:
+        >>> check_has_cells("skin of a tool", 4, 4, ["block"])
+    """
+    if lost and (lost < total or name.partition(".")[0] in bodies):
+        raise InputError(
+            f"facet group {name!r}: {lost} of {total} facets have nodes that no cell has; merge "
+            "nodes that lie on each other"
         )
 
 

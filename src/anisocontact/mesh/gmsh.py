@@ -16,7 +16,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
 from anisocontact.base.words import hint
-from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
+from anisocontact.mesh.arrays import MeshArrays, check_boundary, check_has_cells, facet_owners
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.msh import ElementBlock, MshFile, read_msh
@@ -56,6 +56,8 @@ _IN_VTK = {
 _IN_VTK |= {full: _IN_VTK[edges] for full, edges in ((12, 17), (13, 18), (14, 19))}
 #: Those of them that are kept as they are where they are alone.
 _AS_THEY_ARE = set(CELLS)
+#: What groups of cells are of; without volumes surfaces are bodies in the plane.
+_GROUPS = {3: "volume", 2: "the file has no volumes, and surface"}
 #: Corners of facets by the gmsh element type of these.
 _CORNERS = {1: 2, 8: 2, 2: 3, 9: 3}
 
@@ -143,7 +145,12 @@ def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> 
     surfaces: dict[str, list[Ints]] = {}
     for name, block in _named(msh, dim - 1):
         surfaces.setdefault(name, []).append(block.nodes)
-    groups = {name: known.fetch(compact, np.concatenate(parts)) for name, parts in surfaces.items()}
+    of_facets = {name: np.concatenate(parts) for name, parts in surfaces.items()}
+    everywhere = known.marked(np.concatenate([b.nodes.ravel() for b in msh.blocks if b.dim == dim]))
+    for name, nodes in of_facets.items():
+        lost = int((~known.fetch(everywhere, nodes).all(axis=1)).sum())
+        check_has_cells(name, mesh.sum(lost), mesh.sum(len(nodes)), mesh.bodies)
+    groups = {name: known.fetch(compact, nodes) for name, nodes in of_facets.items()}
     mesh = replace(mesh, facets=_facet_groups(mesh, groups))
     lower: dict[str, list[Ints]] = {}
     for name, block in (one for below in range(dim - 1) for one in _named(msh, below)):
@@ -154,7 +161,9 @@ def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> 
 def _made_over(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> MeshArrays:
     """Cells of which nodes are put in, or which are cut, so that a mesh can have them."""
     mesh = WholeMesh(msh.points)
-    for name, block in _volumes(msh, dim, bodies):
+    taken = _volumes(msh, dim, bodies)
+    others = [("", b) for b in msh.blocks if b.dim == dim and all(b is not one for _, one in taken)]
+    for name, block in taken + others:
         cell, order = _IN_VTK[block.kind]
         mesh.add_cells(cell, block.nodes[:, order], [name] * len(block.nodes))
     for name, block in _named(msh, dim - 1):
@@ -197,7 +206,7 @@ def _volumes(
     known = list(dict.fromkeys(name for name, _ in named))
     for name in known:
         if "." in name:
-            raise InputError(f"volume group {name!r}: the name of a body has no dot")
+            raise InputError(f"{_GROUPS[dim]} group {name!r}: the name of a body has no dot")
     for name in bodies or ():
         if name not in known:
             raise InputError(f"no volume group {name!r}; {hint(name, known)}")

@@ -15,7 +15,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.base.words import hint
-from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, check_has_cells
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
@@ -89,6 +89,18 @@ class WholeMesh:
             if name not in known:
                 raise InputError(f"no body {name!r}; {hint(name, known)}")
         wanted = known if bodies is None else bodies
+        self._check_facets(wanted)
+        return self._arrays(wanted)
+
+    def _check_facets(self, wanted: Sequence[str]) -> None:
+        """Refuse surfaces in part of nodes that no cell has."""
+        none = np.zeros(0, dtype=np.int64)
+        used = np.unique(np.concatenate([none, *(nodes.ravel() for _, nodes in self.cells)]))
+        for name, parts in self.surfaces.items():
+            lost = sum(int((~np.isin(corners, used).all(axis=1)).sum()) for corners in parts)
+            check_has_cells(name, lost, sum(map(len, parts)), wanted)
+
+    def _arrays(self, wanted: Sequence[str]) -> MeshArrays:
         joined = self._by_kind(wanted)
         if not joined:
             raise InputError("no element is in a body")
@@ -101,7 +113,7 @@ class WholeMesh:
             self.notes = (*self.notes, f"{wrong} cells are numbered the other way round, turned")
         cells = {cell for cell, _ in joined}
         if cells <= set(COUNT) and (len(cells) > 1 or cells & {"prism", "pyramid"}):
-            return self._cut(joined).arrays(wanted)
+            return self._cut(joined)._arrays(wanted)
         if cells == {"triangle", "quadrilateral"}:
             return in_triangles(self, joined).arrays(wanted)
         self._check_apart(joined)
