@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import scipy
 
-from anisocontact.base.fenicsx import PETSc
+from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.fenicsx import PETSc, assemble_into, create_stiffness, fem, ufl
 from anisocontact.base.places_in_matrix import PlacesInMatrix
+from anisocontact.mesh import BoxSpec, build_box
 
 RNG = np.random.default_rng(7)
 
@@ -95,3 +97,28 @@ def test_columns_out_of_order_are_not_taken():
     """Places are found by a merge of rows whose columns increase."""
     out = _petsc(scipy.sparse.csr_array(np.ones((2, 2))))
     assert not PlacesInMatrix(np.array([0, 2, 3]), np.array([1, 0, 1])).copy(np.ones(3), out)
+
+
+@pytest.mark.parametrize("components", [3, 1], ids=["one space", "two spaces"])
+def test_matrix_of_a_form_is_the_one_that_petsc_sums_up(components):
+    """Cells summed in rows of DOLFINx, or by PETSc where a form has two spaces: the same bits.
+
+    Assembled again into the same matrix it is twice as large, so its places are PETSc's.
+    """
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 2, 3), (3, 2, 2))})
+    u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)
+    form = ufl.inner(ufl.sym(ufl.grad(u)), ufl.grad(v)) * ufl.dx
+    if components == 1:
+        other = fem.functionspace(model.mesh, ("Lagrange", 1))
+        form = ufl.div(u) * ufl.TestFunction(other) * ufl.dx
+    made = compiled(form, model.mesh.comm)
+    found = create_stiffness(made)
+    first = found.getValuesCSR()
+    by_petsc = found.duplicate()
+    assemble_into(by_petsc, made)
+    by_petsc.assemble()
+    for one, other in zip(first, by_petsc.getValuesCSR(), strict=True):
+        assert np.array_equal(one, other)
+    assemble_into(found, made)
+    found.assemble()
+    assert found.getValuesCSR()[2] == pytest.approx(2.0 * first[2], rel=1e-14, abs=1e-15)
