@@ -59,6 +59,25 @@ def test_auto_says_why_it_takes_direct(
     assert reason in choice.reason
 
 
+def test_factors_are_analysed_where_a_guess_of_their_memory_is_too_much(
+    fe: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With memory for what factors have, but not for what they are taken for without an analysis.
+
+    Required: both estimates are asked for, the larger one first, and `condensed` is taken.
+    """
+    problem = fe.block(fe.interface()).problem
+    task = Task(problem, [PRESS], "", {})
+    touched = strategy.touched_nodes(problem, [PRESS])
+    most, least = (
+        costs.condensing_bytes(strategy._condensable(task, touched, guess))
+        for guess in (True, False)
+    )
+    assert most > least
+    monkeypatch.setattr(costs, "free_memory", lambda: (most + least) / 2.0 / costs.MEMORY_SHARE)
+    assert _choice(problem).name == "condensed"
+
+
 @pytest.mark.parametrize(("thick", "taken"), [(1, "direct"), (2, "direct"), (4, "condensed")])
 def test_sheets_that_are_touched_all_over_are_factorised(fe: Any, thick: int, taken: str) -> None:
     """Where contact unknowns are many beside all, their dense matrix is what takes the time.

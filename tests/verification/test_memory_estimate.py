@@ -15,7 +15,11 @@ from anisocontact.bulk import LinearBulk, make_material
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver.strategies.condensed.analysis import factor_entries, node_graph
+from anisocontact.solver.strategies.condensed.analysis import (
+    factor_entries,
+    most_entries,
+    node_graph,
+)
 from anisocontact.solver.strategies.condensed.mumps import partial_factor, reachable
 
 CASE = """
@@ -158,7 +162,8 @@ def test_entries_of_a_factor_are_those_of_its_nodes(
     """Entries by the analysis of nodes against those that MUMPS finds for all unknowns.
 
     Required: within 15 %, as METIS' cuts of small graphs scatter (by up to 11 %; of 7,000 unknowns
-    and more by up to 4 %); a body that is touched all over has its triangle.
+    and more by up to 4 %); a body that is touched all over has its triangle; what is said without
+    an analysis is more, but no more than seven times as much.
     """
     if not reachable():
         pytest.skip("this PETSc has no MUMPS")
@@ -169,6 +174,7 @@ def test_entries_of_a_factor_are_those_of_its_nodes(
     border = np.full(count, touched == "all")
     border[model.facet_nodes("block.bottom") if touched == "bottom" else [0]] = True
     found = factor_entries(node_graph(stiffness), border, 3 * count)
+    assert found < most_entries(3 * np.count_nonzero(border), 3 * count) < 7.0 * found
     if touched == "all":
         assert found == pytest.approx(0.5 * (3 * count) ** 2, rel=tolerance)
         return

@@ -11,7 +11,11 @@ from anisocontact.base.array_types import Flags
 from anisocontact.base.strategies import CONDENSED, strategy_entry
 from anisocontact.contact import Contact
 from anisocontact.solver.strategies.condensed import bordered
-from anisocontact.solver.strategies.condensed.analysis import factor_entries, node_graph
+from anisocontact.solver.strategies.condensed.analysis import (
+    factor_entries,
+    most_entries,
+    node_graph,
+)
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton
@@ -79,8 +83,7 @@ class CondensedStrategy:
                 f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not "
                 "pay"
             )
-        needed = condensing_bytes(_condensable(task, touched))
-        yield from too_large(f"condensing on {count} contact unknowns", needed)
+        yield from _lack(task, touched, f"condensing on {count} contact unknowns")
         wide = WIDE_LINEAR if problem.linear else WIDE
         many = count > wide * problem.unknowns**POWER
         if many and not work(problem, task.steps, touched).pays:
@@ -104,21 +107,41 @@ class CondensedStrategy:
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
 
 
-def _condensable(task: Task, touched: Flags) -> Condensable:
-    """The bodies of a task, with what its first step prescribes."""
+def _lack(task: Task, touched: Flags, what: str) -> Iterator[str]:
+    """Why there is too little memory; factors are analysed where guesses do not say enough."""
+    for most in (True, False):
+        lack = list(too_large(what, condensing_bytes(_condensable(task, touched, most))))
+        if not lack:
+            return
+    yield from lack
+
+
+def _condensable(task: Task, touched: Flags, most: bool = False) -> Condensable:
+    """The bodies of a task, with what its first step prescribes.
+
+    Args:
+        task: The task.
+        touched: Whether a node can be touched, (nodes,).
+        most: Whether more entries of the factors will do than there are.
+    """
     problem, model = task.problem, task.problem.model
     free = np.ones((len(touched), 3), dtype=np.bool_)
     supports = Supports(model)
     for step in task.steps[:1]:
         supports.begin(step, np.zeros(free.size))
     free.reshape(-1)[supports.unknowns] = False
-    graph, parts = node_graph(problem.bulk.stiffness), []
+    graph = None if most else node_graph(problem.bulk.stiffness)
+    parts = []
     for name in model.body_names():
         nodes = np.unique(model.space.dofmap.list[model.cells(name)])
         nodes = nodes[free[nodes].any(axis=1)]
         unknowns, border = int(free[nodes].sum()), int(free[nodes[touched[nodes]]].sum())
-        own = graph[nodes][:, nodes].tocsr()
-        parts.append(Part(unknowns, border, factor_entries(own, touched[nodes], unknowns)))
+        if graph is None:
+            entries = most_entries(border, unknowns)
+        else:
+            own = graph[nodes][:, nodes].tocsr()
+            entries = factor_entries(own, touched[nodes], unknowns)
+        parts.append(Part(unknowns, border, entries))
     return Condensable(
         parts,
         problem.bulk.stiffness.getInfo()["nz_used"],
