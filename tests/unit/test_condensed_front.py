@@ -15,11 +15,29 @@ from anisocontact.solver.strategies.condensed.bordered import BorderedLU
 from anisocontact.solver.strategies.condensed.bordered import reachable as borders
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.factor import aij
-from anisocontact.solver.strategies.condensed.front import Front, whole
+from anisocontact.solver.strategies.condensed.front import Front, difference, whole
 from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
+
+
+@pytest.mark.parametrize("alike", [True, False], ids=["same places", "other places"])
+def test_difference_leaves_both_matrices_as_they_are(alike: bool) -> None:
+    """Also where entries of it that are zero go afterwards: places are not shared."""
+    rng = np.random.default_rng(3)
+    one = scipy.sparse.random_array((9, 9), density=0.3, rng=rng, format="csr")
+    other = one.copy()
+    other.data[::2] *= 2.0
+    if not alike:
+        other = (other + scipy.sparse.eye_array(9)).tocsr()
+    dense = one.toarray(), other.toarray()
+    found = difference(one, other)
+    found.eliminate_zeros()
+    assert np.array_equal(found.toarray(), dense[0] - dense[1])
+    assert found.nnz == np.count_nonzero(dense[0] - dense[1])
+    assert np.array_equal(one.toarray(), dense[0])
+    assert np.array_equal(other.toarray(), dense[1])
 
 
 def test_contact_tangent_and_its_factor() -> None:

@@ -72,6 +72,11 @@ def scaled_jacobian(mesh: MeshArrays) -> Floats:
     Args:
         mesh: The mesh, of one process; the corners are looked at.
     """
+    return _shaped(mesh, _corner_volumes(mesh))
+
+
+def _shaped(mesh: MeshArrays, volumes: Floats) -> Floats:
+    """`scaled_jacobian` with the volumes at the corners of each cell, (cells, corners)."""
     points = mesh.points[mesh.cells[:, _CORNERS[mesh.cell]]]
     arms = points[:, :, 1:] - points[:, :, :1]
     lengths = np.moveaxis(np.linalg.norm(arms, axis=3), 2, 0)
@@ -85,7 +90,7 @@ def scaled_jacobian(mesh: MeshArrays) -> Floats:
         third = np.linalg.norm(points[:, :, 2] - points[:, :, 1], axis=2)
         longest = np.sort([*lengths, third], axis=0)[1:]
         size = longest.prod(axis=0) * np.sqrt(0.75)
-    return np.asarray((_corner_volumes(mesh) / size).min(axis=1))
+    return np.asarray((volumes / size).min(axis=1))
 
 
 def _sizes(mesh: MeshArrays) -> tuple[Floats, Floats, Floats]:
@@ -95,10 +100,10 @@ def _sizes(mesh: MeshArrays) -> tuple[Floats, Floats, Floats]:
     for begin in range(0, len(mesh.cells), _AT_ONCE):
         some = replace(mesh, cells=mesh.cells[begin : begin + _AT_ONCE])
         volumes = _corner_volumes(some)
+        shaped = _shaped(some, volumes)
         if mesh.degree == 2:
             volumes = np.hstack([volumes, _inner_volumes(some)])
-        most = np.abs(volumes).max(axis=1)
-        found.append(np.stack([volumes.min(axis=1), most, scaled_jacobian(some)]))
+        found.append(np.stack([volumes.min(axis=1), np.abs(volumes).max(axis=1), shaped]))
     least, most, shaped = np.concatenate(found, axis=1)
     return least, most, shaped
 

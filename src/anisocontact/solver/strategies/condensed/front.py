@@ -150,6 +150,15 @@ def whole(count: int) -> tuple[Sparse, Flags]:
     return none, np.zeros(count, dtype=np.bool_)
 
 
+def difference(one: Sparse, other: Sparse) -> Sparse:
+    """One matrix less another one; where both have the same places these are not put together."""
+    pairs = ((one.indptr, other.indptr), (one.indices, other.indices))
+    if not all(np.array_equal(*pair) for pair in pairs):
+        return (one - other).tocsr()
+    places = (one.indices.copy(), one.indptr.copy())
+    return scipy.sparse.csr_array((one.data - other.data, *places), one.shape)
+
+
 def follow(matrix: Reals, shares: Sparse) -> None:
     """Make a matrix A that of unknowns of which others follow, `(1 + P)^T A (1 + P)`."""
     back = shares.T.tocsr()

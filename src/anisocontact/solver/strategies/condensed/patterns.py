@@ -293,8 +293,10 @@ class Patterns:
 
     def _padded(self, state: InteriorState) -> tuple[Floats, Floats]:
         """Coefficients with zeros for patterns that have come since."""
-        missing = (self._lifts.shape[1] - len(state.a), self._forces.shape[1] - len(state.b))
-        return np.pad(state.a, (0, missing[0])), np.pad(state.b, (0, missing[1]))
+        padded = np.zeros(self._lifts.shape[1]), np.zeros(self._forces.shape[1])
+        for own, out in zip((state.a, state.b), padded, strict=True):
+            out[: len(own)] = own
+        return padded
 
 
 def _scattered(values: Floats, at: list[int], size: int) -> Floats:

@@ -63,6 +63,8 @@ class Places:
         for slave, _, _ in opposite:
             slaves[self._number[slave]] = True
         slaves = slaves[:size]
+        if not opposite:
+            return self.following(opposite, size), slaves
         found = self.following(opposite, size).tocoo()
         again = np.isin(found.row, found.row[slaves[found.col]])
         parts = (found.data[~again], (found.row[~again], found.col[~again]))
@@ -70,6 +72,8 @@ class Places:
 
     def following(self, opposite: Sequence[Opposite], size: int) -> scipy.sparse.csr_array:
         """Shares of unknowns in those of nodes that follow them, single precision, (size, size)."""
+        if not opposite:
+            return scipy.sparse.csr_array((size, size), dtype=np.float32)
         rows, columns = np.zeros(0, np.int64), np.zeros(0, np.int64)
         values = np.zeros(0, np.float32)
         for slave, masters, shares in opposite:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
-from anisocontact.solver.strategies.condensed.front import Front, Reals
+from anisocontact.solver.strategies.condensed.front import Front, Reals, difference
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 
 Step = Callable[[Reals], tuple[Reals, Reals]]
@@ -18,7 +18,7 @@ def step_of_changes(front: Front, factor: UpdatedFactor, tangent: ContactTangent
 
     With the factor of `M = S' + K` of an earlier K the product is `A M^-1 v = v + (C - K) M^-1 v`.
     """
-    change = front.own(tangent.summed) - factor.held
+    change = difference(front.own(tangent.summed), factor.held)
     change.eliminate_zeros()
 
     def step(v: Reals) -> tuple[Reals, Reals]:

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Ints
-from anisocontact.solver.strategies.condensed.front import Reals, Sparse, factorised
+from anisocontact.solver.strategies.condensed.front import Reals, Sparse, difference, factorised
 
 #: Shares of the largest entry of its column in the factor that an entry has to change by to count:
 #: the first with which columns are not too many. What changes less is left to Krylov iterations.
@@ -72,12 +72,14 @@ class UpdatedFactor:
         Returns:
             How many columns had to be found; None where they are too many, or there is no inverse.
         """
-        change = (held - self.first).tocsr()
+        change = difference(held, self.first)
+        change.data[np.abs(change.data) <= self._mild[change.indices]] = 0.0
+        change.eliminate_zeros()
         size, column = np.abs(change.data), change.indices
-        change.data[size <= self._mild[column]] = 0.0
+        row = np.repeat(np.arange(change.shape[0]), np.diff(change.indptr))
         for share in self._clearly:
             change.data[size <= share * self._size[column]] = 0.0
-            rows = np.flatnonzero(abs(change).max(axis=1).toarray())
+            rows = np.unique(row[change.data != 0.0])
             missing = rows[self._place[rows] < 0]
             if self.columns + len(missing) <= most:
                 break
@@ -86,7 +88,7 @@ class UpdatedFactor:
         change.eliminate_zeros()
         self._find(missing)
         self._own, self._rows = self._place[rows], change[rows].tocsr() if len(rows) else None
-        self.held = (self.first + change).tocsr()
+        self.held = (self.first + change).tocsr() if len(rows) else self.first
         if self._rows is not None:
             small = np.asfortranarray((self._rows @ self._columns)[:, self._own])
             small[np.diag_indices(len(rows))] += 1.0
