@@ -8,6 +8,7 @@ from __future__ import annotations
 import gc
 import json
 import math
+import os
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -225,3 +226,4 @@ def _add(scene: Scene, grid: Solid, shown: Shown, unit: str, length: str, colour
 
 if __name__ == "__main__":
     _main()
+    os._exit(0)  # all is written, and taking apart what was imported takes a while
