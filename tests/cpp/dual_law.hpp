@@ -60,19 +60,28 @@ std::array<Vec3<S>, 2> kept_pair(const KeptPair& kept, const Motion<S>& k) {
   return {turned(kept[0], kept[1]), turned(kept[2], kept[3])};
 }
 
-/// The turn of the slave about the normal against the master since the committed state: that of
-/// the two tangents of the slave, by the rotation in the polar decomposition of their change.
+/// The turn about the normal of what takes the slave from its committed tangents and normal to those
+/// of now, F = t_i s^i + m m_0: the angle at which a rotation about the normal is nearest to it.
 template <class S>
 S relative_spin(const PointState& state, const Motion<S>& k) {
   using std::atan2;
+  using std::sqrt;
   if (!has_pair(state.slave)) return S(0.0);
-  const auto old = kept_pair(state.slave, k);
   const Vec3<S>& n = k.now.normal;
-  const auto across = [&](const Vec3<S>& u, const Vec3<S>& v) { return u.cross(v).dot(n); };
-  const S sine = k.own[0].dot(old[1]) - k.own[1].dot(old[0]) -
-                 (k.own[0].dot(n) * old[1].dot(n) - k.own[1].dot(n) * old[0].dot(n));
-  const S cosine = across(k.own[0], old[1]) + across(old[0], k.own[1]);
-  return value(across(old[0], old[1])) < 0.0 ? atan2(-sine, -cosine) : atan2(sine, cosine);
+  auto old = kept_pair(state.slave, k);
+  for (std::size_t i = 0; i < 2; ++i) old[i] += S(state.slave_rise[i]) * n;
+  const Vec3<S> area = old[0].cross(old[1]), area_now = k.own[0].cross(k.own[1]);
+  const Vec3<S> m0 = (S(1.0) / sqrt(area.dot(area))) * area;
+  const Vec3<S> m = (S(1.0) / sqrt(area_now.dot(area_now))) * area_now;
+  const S inverse = S(1.0) / area.dot(area);
+  const std::array<Vec3<S>, 3> from{inverse * old[1].cross(area), inverse * area.cross(old[0]), m0};
+  const std::array<Vec3<S>, 3> to{k.own[0], k.own[1], m};
+  S sine{0.0}, cosine{0.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    sine += from[i].cross(to[i]).dot(n);
+    cosine += from[i].dot(to[i]) - from[i].dot(n) * to[i].dot(n);
+  }
+  return atan2(sine, cosine);
 }
 
 /// History and slip of `Transport`, or of `BackwardEuler`.

@@ -142,11 +142,30 @@ kernel::PointState history(Random& r) {
   s.elastic = r.pair(0.01);
   s.pressure = 2.0;
   s.slip_accumulated = 1.0;
-  const double angle = r(-1.2, 1.2);  // that the slave turned since
-  if (r(0.0, 1.0) < 0.3) return s;
-  s.slave = {std::cos(angle), std::sin(angle) + 0.1, -std::sin(angle), std::cos(angle)};
-  if (r.coin()) std::swap_ranges(s.slave.begin(), s.slave.begin() + 2, s.slave.begin() + 2);
   return s;
+}
+
+/// Inclines the slave, up to where it is seen from its side and beyond; directions on it have no image in
+/// the contact plane there.
+void incline(Random& r, kernel::InterfaceLaw& law, kernel::PairPoint& p) {
+  const Eigen::AngleAxisd tilt(r(-1.8, 1.8), (Vec3<double>::UnitX() + r.vector(1.0)).normalized());
+  for (auto& d : p.own.now.d1) d = tilt * d;
+  for (auto* directions :
+       {&law.adhesion_directions, &law.friction_directions, &law.friction_directions_second})
+    directions->side = Side::master;
+}
+
+/// A committed slave that has turned and stretched since, in any inclination.
+void put_slave(Random& r, const kernel::PairPoint& p, kernel::PointState& state) {
+  const auto before = surface::tangent_plane(p.before);
+  const Eigen::AngleAxisd turn(r(-1.2, 1.2), r.vector(1.0).normalized());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3<double> old = turn * p.own.now.d1[i] + r.vector(0.1);
+    const auto c = before.project_contra(old);
+    state.slave[2 * i] = c[0];
+    state.slave[2 * i + 1] = c[1];
+    state.slave_rise[i] = before.normal.dot(old);
+  }
 }
 
 /// Committed axes of adhesion that have turned since: those of now by up to 0.6, so that none halfway
@@ -235,9 +254,11 @@ struct Tally {
 };
 
 void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally) {
-  const auto law = law_of(r, rule, r(0.0, 1.0) < 0.3);
+  auto law = law_of(r, rule, r(0.0, 1.0) < 0.3);
   auto state = history(r);
-  const auto p = point(r, feature);
+  auto p = point(r, feature);
+  if (r.coin()) incline(r, law, p);
+  if (state.status != 0 && r(0.0, 1.0) < 0.7) put_slave(r, p, state);
   if (state.status != 0 && r.coin()) put_axes(r, law, p, state);
   kernel::PairSlopes by;
   const auto fast = kernel::update_pair<true>(law, kernel::CoreLaw(law), state, p, 0.5, &by);

@@ -132,6 +132,11 @@ def _about_z(angle: float) -> np.ndarray:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
+def _about_y(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
 ARM = np.array([10.0, 0.0, -1e-3])
 TANGENTS = np.array([[0.3, 0.1, 0.02], [-0.2, 0.5, 0.01]])
 MU, STIFF = 0.3, 1e4
@@ -152,12 +157,17 @@ def _slave(turn: np.ndarray, tangents: np.ndarray) -> SlaveSurface:
 
 @pytest.mark.parametrize("degrees", [5.0, 45.0, 90.0, 170.0])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_point_of_a_turning_slave_has_all_its_friction(degrees: float, mirrored: bool) -> None:
+@pytest.mark.parametrize("inclined", [0.0, 1.2, 0.5 * np.pi])
+def test_a_point_of_a_turning_slave_has_all_its_friction(
+    degrees: float, mirrored: bool, inclined: float
+) -> None:
     """T = mu N across the radius, against the motion; the dissipation is mu N times the arc.
 
-    What remains is the elastic slip, mu N / k = 3e-5: some 1e-5 of the arc and its angle.
+    However the facet is inclined to the plane, up to where it is seen from its side. What remains
+    is the elastic slip, mu N / k = 3e-5: some 1e-5 of the arc and its angle.
     """
     itf, tangents = _isotropic("plane"), TANGENTS[::-1] if mirrored else TANGENTS
+    tangents = tangents @ _about_y(inclined).T
     state = itf.initial_state(ARM[None])
     at_rest = itf.update(state, ARM[None], slave=_slave(np.eye(3), tangents))
     state, lost = at_rest.state, 0.0
@@ -171,6 +181,26 @@ def test_a_point_of_a_turning_slave_has_all_its_friction(degrees: float, mirrore
     assert r.state["spin"][0] == pytest.approx(np.radians(degrees), rel=1e-12)
     assert r.state["turn"][0] == pytest.approx(np.radians(degrees), rel=1e-12)
     assert lost == pytest.approx(MU * 10.0 * 3.0 * np.radians(degrees), rel=1e-4)
+
+
+@pytest.mark.parametrize("roll", [0.05, 0.25, 1.0])
+@pytest.mark.parametrize("across", [0.0, 0.7, 0.5 * np.pi])
+@pytest.mark.parametrize("inclined", [0.0, 0.9, 1.5, 1.6, 3.0])
+def test_a_facet_that_rolls_does_not_turn(inclined: float, across: float, roll: float) -> None:
+    """A rotation of a rigid slave about any line in the plane has no part about the normal.
+
+    So slip is the way of the point, and friction is against it: wherever the facet is inclined to,
+    also where it comes to be seen from its side and from behind on the way. Rounding is left.
+    """
+    itf, way = _isotropic("plane"), np.array([0.3, 0.4, 0.0])
+    axes = _about_z(across)
+    there = TANGENTS @ _about_y(inclined).T
+    rolled = axes @ _about_y(roll) @ axes.T
+    state = itf.initial_state(ARM[None])
+    state = itf.update(state, ARM[None], slave=_slave(np.eye(3), there)).state
+    r = itf.update(state, (ARM + way)[None], slave=_slave(rolled, there))
+    assert abs(r.state["spin"][0]) < 1e-12
+    assert r.traction_t[0] == pytest.approx(-MU * way / 0.5, abs=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [20.0, 100.0])
@@ -228,7 +258,7 @@ def test_tangent_with_a_turning_slave(name: str, mu: float) -> None:
     now = SlaveSurface(places[0][None], rng.normal(size=(1, 2, 3)), rng.normal(size=(1, 2, 3)))
     for place in places[:2]:
         state = itf.update(state, place[None], slave=now).state
-        turned = now.tangents @ _about_z(0.2).T
+        turned = now.tangents @ (_about_y(0.2) @ _about_z(0.2)).T  # about the normals of them all
         now = SlaveSurface(now.reference, now.reference_tangents, turned)
     r = itf.update(state, places[2][None], slave=now)
     assert abs(r.state["spin"][0]) > 0.005

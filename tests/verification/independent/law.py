@@ -251,7 +251,7 @@ class Law:
         if self.evolution == "transport" and slave is not None and old.slave is not None:
             there = self.patch.at(old.xi)
             before = np.array([_turned(v, there, here) for v in old.slave])
-            moved = _spun(moved, t @ before.T, t @ slave.T)
+            moved = _spun(moved, t, _gradient(before, slave))
         if old.status == OPEN:
             stored, elastic, moved = np.zeros(2), np.zeros(2), share * moved
         lower = self._axes(old, here) @ t.T  # axes in the frame, row by row
@@ -364,12 +364,21 @@ def _arc(chord: Floats, there: Place, here: Place) -> Floats:
     return along + longer * about(axis, 0.5 * angle, chord - along)
 
 
-def _spun(chord: Floats, before: Floats, now: Floats) -> Floats:
+def _gradient(before: Floats, now: Floats) -> Floats:
+    """What takes two tangents, the rows, and their unit normal to those of now."""
+    columns = []
+    for pair in (before, now):
+        area = cross(*pair)
+        columns.append(np.column_stack([*pair, area / np.linalg.norm(area)]))
+    return np.asarray(columns[1] @ np.linalg.inv(columns[0]))
+
+
+def _spun(chord: Floats, t: Floats, gradient: Floats) -> Floats:
     """The path that a chord spans where the slave turns evenly about the normal, along its end.
 
-    The turn is the rotation in the change of two material tangents, the columns, in the frame.
+    The turn is the rotation in the part of the slave's gradient that stays in the contact plane.
     """
-    rotation, _ = polar(now @ np.linalg.inv(before))
+    rotation, _ = polar(t @ gradient @ t.T)
     spin = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
     c, s = np.cos(0.5 * spin), np.sin(0.5 * spin)
     return np.array([[c, -s], [s, c]]) @ chord / np.sinc(0.5 * spin / np.pi)

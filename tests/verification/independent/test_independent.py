@@ -151,15 +151,17 @@ class Compared:
             assert apart <= tolerance * size, name
 
 
-def material(place: Place, k: int) -> np.ndarray:
-    """Two tangents of a slave that turns and stretches, and does not lie in the plane."""
+def material(place: Place, k: int, inclined: float) -> np.ndarray:
+    """Two tangents of a slave that turns and stretches, inclined to the plane, more and less."""
     t = place.frame(0.2 + 0.4 * np.sin(0.7 * k))
     stretch = np.array([[1.1, 0.2 + 0.01 * k], [0.1, 0.9]])
-    return np.asarray(stretch @ t + 0.1 * place.normal)
+    flat = stretch @ t + 0.1 * place.normal
+    angle = inclined + 0.2 * np.sin(0.5 * k)
+    return np.array([numpy_law.about(t[0], angle, v) for v in flat])
 
 
-def follow(core: Interface, mine: numpy_law.Law, spins: bool = False) -> np.ndarray:
-    """Both along the path; how often each status occurs."""
+def follow(core: Interface, mine: numpy_law.Law, inclined: float | None = None) -> np.ndarray:
+    """Both along the path, beside a slave of any inclination or none; how often each status is."""
     patch = mine.patch
     feet, gaps = path(patch)
     found, statuses = Compared(), np.zeros(3, dtype=int)
@@ -169,8 +171,8 @@ def follow(core: Interface, mine: numpy_law.Law, spins: bool = False) -> np.ndar
         state = core.initial_state(x[:1])
         history = numpy_law.History(feet[0, point], gaps[0, point])
         for k in range(1, len(x)):
-            own = material(places[k], k) if spins else None
-            slave = SlaveSurface(x[k : k + 1], own[None], own[None]) if spins else None
+            own = None if inclined is None else material(places[k], k, inclined)
+            slave = None if own is None else SlaveSurface(x[k : k + 1], own[None], own[None])
             r = core.update(state, x[k : k + 1], DT, tangent=False, slave=slave)
             state, s = r.state, r.state[0]
             a = mine.step(history, feet[k, point], gaps[k, point], DT, own)
@@ -202,10 +204,14 @@ def test_law_over_an_oblique_patch(evolution: str, adhesion: str, rule: str) -> 
     assert (statuses > 3).all()
 
 
+@pytest.mark.parametrize("inclined", [0.0, 1.2, 0.5 * np.pi])
 @pytest.mark.parametrize("adhesion", ["elastic", "full"])
-def test_slave_that_turns(adhesion: str) -> None:
-    """The slip of a step spans an arc where the slave turns against the master."""
-    follow(*both(SHEET, "transport", adhesion, "maximum-dissipation"), spins=True)
+def test_slave_that_turns(adhesion: str, inclined: float) -> None:
+    """The slip of a step spans an arc where the slave turns against the master.
+
+    Also where its facet is inclined to the contact plane, up to where it is seen from its side.
+    """
+    follow(*both(SHEET, "transport", adhesion, "maximum-dissipation"), inclined)
 
 
 @pytest.mark.parametrize("rule", numpy_law.RULES)

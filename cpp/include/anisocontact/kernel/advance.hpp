@@ -40,7 +40,10 @@ ANISOCONTACT_INLINE void put_companions(const Located& at, PointState& s) {
     kept[2 * i + 1] = c[1];
   };
   for (std::size_t i = 0; i < 2; ++i) {
-    if (at.own != nullptr) keep(at.own->now.d1[i], i, s.slave);
+    if (at.own != nullptr) {
+      keep(at.own->now.d1[i], i, s.slave);
+      s.slave_rise[i] = at.basis.normal.dot(at.own->now.d1[i]);
+    }
     if (at.adhesion != nullptr) keep(at.adhesion->axis[i].e, i, s.axes);
   }
   if (at.committed == nullptr || !at.committed->remembers()) return;

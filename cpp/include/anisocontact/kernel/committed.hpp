@@ -37,8 +37,7 @@ class CommittedPoint {
     for (std::size_t a = 0; a < 2; ++a) lean_[a] = plane.t[a] - n0_[a] * share_ * plane.n;
     if (remembers_) remember(before);
     if (remembers_ && own != nullptr && has_pair(state.slave))
-      spin_.emplace(plane, *own,
-                    std::array<Flat, 2>{turned(state.slave, 0), turned(state.slave, 1)});
+      spin_.emplace(plane, *own, SlaveFrame({slave_tangent(0), slave_tangent(1)}));
     put_slip();
   }
 
@@ -126,6 +125,12 @@ class CommittedPoint {
   }
   Flat turned(const KeptPair& kept, std::size_t i) const {
     return turned({kept[2 * i], kept[2 * i + 1]});
+  }
+
+  /// A committed tangent of the slave in the frame of the contact plane.
+  Vec3<double> slave_tangent(std::size_t i) const {
+    const Flat along = turned(state_.slave, i);
+    return {along[0], along[1], state_.slave_rise[i]};
   }
 
   /// The chord as the path that it spans, see `ArcOfNormals`: n_0 along the plane is nu.

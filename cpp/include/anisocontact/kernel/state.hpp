@@ -26,6 +26,7 @@ using KeptPair = std::array<double, 4>;
 ///    from, T_i; elastic slip and last sliding increment, xi^i
 ///  slave, axes: tangents of the slave, and axes of adhesion, in the basis at xi, xi^i; no axes
 ///    without directions
+///  slave_rise: components of the tangents of the slave along the normal there
 ///  spin: turn of the slave against the master in the last slip
 ///  turn: last turn of normal, axes or slave: the largest angle
 ///  gap: xi^3 less the offset, the gap at which the surfaces count as touching
@@ -43,6 +44,7 @@ using KeptPair = std::array<double, 4>;
   FIELD(Components, elastic, {})         \
   FIELD(Components, slip, {})            \
   FIELD(KeptPair, slave, {})             \
+  FIELD(Components, slave_rise, {})      \
   FIELD(KeptPair, axes, {})              \
   FIELD(double, spin, {})                \
   FIELD(double, turn, {})                \
