@@ -77,7 +77,8 @@ def test_a_run_imports_only_what_it_uses(unpictured, tmp_path):
         f"end = main(['run', {str(tmp_path / 'case.toml')!r}, '-o', {str(tmp_path / 'out')!r}]); "
         "print(end, sorted({'scipy.spatial', 'matplotlib', 'pyvista', 'gmsh', 'rich', 'pandas', "
         "'numpy.f2py.crackfortran', 'numpy.testing._private', 'unittest', "
-        "'numpy.polynomial.legendre'} & set(sys.modules))); "
+        "'numpy.polynomial.legendre', 'anisocontact.contact.tie_weights', 'anisocontact.mesh.inp', "
+        "'anisocontact.solver.strategies.iterative.newton'} & set(sys.modules))); "
         "import numpy; print(callable(numpy.f2py.run_main), "
         "callable(numpy.testing.assert_equal), numpy.polynomial.Polynomial([0, 1])(2))"
     )

@@ -8,7 +8,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.strategies import AUTO, CONDENSED, DIRECT, ITERATIVE
 from anisocontact.solver.strategies.database import Database, OptionValue
-from anisocontact.solver.strategies.iterative.newton import DEFAULTS
+from anisocontact.solver.strategies.iterative.defaults import DEFAULTS
 
 _OF_PETSC = ("snes_", "ksp_", "pc_", "mat_", "vec_", "sub_", "mg_", "fieldsplit_")
 _OF_LEVELS = (*_OF_PETSC, "smoother_", "coarse_", "aggregates_")

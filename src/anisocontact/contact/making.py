@@ -15,11 +15,9 @@ from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.beyond_cuts import BeyondCuts, Seam
 from anisocontact.contact.defaults import takes_nodes
-from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
 from anisocontact.contact.images import Images
 from anisocontact.contact.master import Master
-from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
@@ -309,9 +307,14 @@ def _on_facets(
         nodes,
         beyond,
     )
+    # the masters of two bodies, which contact with a surface does without
     if nodes is not None:
+        from anisocontact.contact.mortar_master import MortarMaster
+
         size = facet_size(model, master)
         met = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
         return nodes, met, law
+    from anisocontact.contact.facet_master import FacetMaster
+
     found = FacetMaster(sides, law, group=master, size=facet_size(model, master))
     return sides.points, found, law

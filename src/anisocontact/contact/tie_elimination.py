@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.errors import InputError
-from anisocontact.contact.tie_weights import TieConditions
+
+if TYPE_CHECKING:
+    from anisocontact.contact.tie_weights import TieConditions
 
 type Sparse = scipy.sparse.csr_array
 

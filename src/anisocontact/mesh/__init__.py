@@ -10,7 +10,6 @@ from anisocontact.mesh.idealisation import (
     idealisations,
     make_idealisation,
 )
-from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.node_groups import node_near, nodes_along
 from anisocontact.mesh.placement import Placement, Rotation
@@ -62,7 +61,6 @@ __all__ = [
     "node_near",
     "nodes_along",
     "read_gmsh",
-    "read_inp",
     "register_reader",
     "register_selector",
     "selectors",

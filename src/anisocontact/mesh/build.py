@@ -75,7 +75,7 @@ class Body:
 class MeshFile:
     """The bodies of a mesh file: gmsh's, or that of another code, by the ending of its name.
 
-    See `read_gmsh`, `read_inp` and `register_reader`.
+    See `read_gmsh`, `mesh.inp.read_inp` and `register_reader`.
 
     Attributes:
         path: The file.

@@ -12,7 +12,6 @@ from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.gmsh import gmsh_arrays
-from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.meshio_files import SUFFIXES, read_by_meshio
 from anisocontact.mesh.unv import read_unv
 from anisocontact.mesh.whole import WholeMesh
@@ -126,6 +125,13 @@ def file_arrays(
     return _READERS.get(path.suffix.lower(), gmsh_arrays)(path, bodies, field, comm)
 
 
+def _read_inp(path: Path) -> WholeMesh:
+    """What `read_inp` reads, which is imported for it: decks have many parts."""
+    from anisocontact.mesh.inp import read_inp
+
+    return read_inp(path)
+
+
 def _refuse(path: Path) -> WholeMesh:
     """Say what to do with a file of a code whose meshes are not read.
 
@@ -139,6 +145,6 @@ def _refuse(path: Path) -> WholeMesh:
 register_reader(".msh")(gmsh_arrays)
 register_reader(*FOREIGN)(whole_reader(_refuse))
 register_reader(*CAD)(cad_arrays)
-register_reader(".inp")(whole_reader(read_inp))
+register_reader(".inp")(whole_reader(_read_inp))
 register_reader(".unv")(whole_reader(read_unv))
 register_reader(*SUFFIXES)(whole_reader(read_by_meshio))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from anisocontact.solver.strategies.condensed.analysis import whole_factor
 from anisocontact.solver.strategies.condensed.work import coupled_nodes
 from anisocontact.solver.strategies.costs import factorisation_cost
-from anisocontact.solver.strategies.iterative.newton import MIXED
+from anisocontact.solver.strategies.iterative.defaults import MIXED
 from anisocontact.solver.strategies.strategy import Task
 
 #: Entries of the stiffness that a correction by Krylov iterations reads, in so many times: with

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +13,11 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.contact.beyond_cuts import Seam
-from anisocontact.contact.tie_weights import TieConditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
+
+if TYPE_CHECKING:
+    from anisocontact.contact.tie_weights import TieConditions
 
 #: Distance over the size of the cut face below which a node is on the axis, or on another node.
 SAME_PLACE = 1e-6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -17,13 +18,15 @@ from anisocontact.contact import facet_size
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import check_sides
 from anisocontact.contact.tie_elimination import eliminated
-from anisocontact.contact.tie_weights import TieConditions, tie_conditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.middles import shares_of_corners
+
+if TYPE_CHECKING:
+    from anisocontact.contact.tie_weights import TieConditions
 
 type Sparse = scipy.sparse.csr_array
 
@@ -314,6 +317,8 @@ class TiedFaces:
 
     def _found(self, name: str, tie: Tie | CyclicSymmetry) -> TieConditions:
         """Conditions of a pair in the first configuration."""
+        from anisocontact.contact.tie_weights import tie_conditions  # of ties alone
+
         size, cut = facet_size(self._model, tie.master), self._cuts.get(name)
         tolerance = TOLERANCE * size if tie.tolerance is None else tie.tolerance
         turning = None if cut is None else cut.turning

@@ -8,6 +8,7 @@ from typing import override
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.database import OptionValue
+from anisocontact.solver.strategies.iterative.defaults import DEFAULTS, MIXED
 from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.iterative.mixed import MixedKrylov
 from anisocontact.solver.strategies.iterative.patch import Patch
@@ -15,20 +16,6 @@ from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
-DEFAULTS: dict[str, OptionValue] = {
-    "ksp_type": "fgmres",
-    "ksp_gmres_restart": 60,
-    "ksp_max_it": 180,
-    "pc_type": "python",
-    # aggregates alone: they are smoothed with what is known of the patch
-    "aggregates_pc_gamg_agg_nsmooths": 0,
-    "aggregates_pc_gamg_coarse_eq_limit": 1000,
-    "smoother_ksp_type": "chebyshev",
-    "smoother_ksp_max_it": 2,
-    "smoother_pc_type": "jacobi",
-}
-#: Stiffness against changes of volume over the rest from which on the mixed form is solved.
-MIXED = 2.0
 #: Residual of a correction over that of its start, at most.
 LOOSEST = 1e-4
 #: Share of Newton's tolerance that a last correction may leave.

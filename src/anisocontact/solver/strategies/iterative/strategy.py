@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from anisocontact.base.strategies import ITERATIVE, strategy_entry
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
-from anisocontact.solver.strategies.iterative.newton import IterativeNewton
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.terms.persistent import Arrays
+
+if TYPE_CHECKING:
+    from anisocontact.solver.strategies.iterative.newton import IterativeNewton
 
 #: Stiffness against changes of volume over the rest from which on a factorisation of all unknowns,
 #: if it fits, takes no longer: at nu = 0.499, which is 84 for hexahedra of order 1, Krylov
@@ -50,5 +53,7 @@ class IterativeStrategy:
         kept: Arrays,
     ) -> IterativeNewton:
         """Newton's method with levels whose last one is factorised."""
+        from anisocontact.solver.strategies.iterative.newton import IterativeNewton
+
         problem, steps, options = task.problem, task.steps, task.options
         return IterativeNewton(problem, steps, task.prefix, options, on_iteration, note)
