@@ -319,6 +319,39 @@ def test_shrink_fit_converges_to_lame():
     assert errors[1] < 0.01
 
 
+@pytest.mark.parametrize("radius", [1e2, 1e4, 1e6])
+def test_a_thin_ring_is_a_strip(radius: float) -> None:
+    """Rings of far larger radius than section, pressed on each other and dragged, are plane strain.
+
+    Source: per length of the circumference they differ by the section over the radius. The foot of
+    the lower one is held: no motion is told to be free.
+    """
+    forces = []
+    for ideal, start in ((PlaneStrain(), 0.0), (Axisymmetric(), radius)):
+        upper = make_shape("rectangle", origin=(start + 0.3, 0.0), size=(1.0, 0.5), cells=(4, 2))
+        lower = make_shape("rectangle", origin=(start, -0.5), size=(1.6, 0.5), cells=(5, 2))
+        model = build_mesh([Body("upper", upper), Body("lower", lower)], idealisation=ideal)
+        contact = Contact(model, "upper.bottom", "lower.top", Friction(coefficients=0.2))
+        problem = Problem(model, {"upper": RUBBER, "lower": RUBBER}, [contact])
+        foot = {"lower.bottom": {"x": 0.0, "y": 0.0}}
+        press = Step("press", 1, foot | {"upper.top": {"x": 0.0}}, pressure={"upper.top": 20.0})
+        run(problem, press, Step("drag", 2, {"upper.top": {"x": 0.05}}))
+        length = 2.0 * np.pi * start if start else 1.0
+        forces.append(contact.resultant()[0] / length)
+    strip, ring = forces
+    assert strip[1] > 19.0
+    np.testing.assert_allclose(ring, strip, atol=2.0 / radius * strip[1])
+
+
+def test_what_is_free_of_a_thin_ring_is_told() -> None:
+    """Requirement: without a support it moves along its axis and turns about it, no more."""
+    shape = make_shape("rectangle", origin=(1e6, 0.0), size=(1.0, 1.0), cells=(2, 2))
+    model = build_mesh([Body("b", shape)], idealisation=Axisymmetric(lateral=True))
+    problem = Problem(model, {"b": STEEL})
+    with pytest.raises(InputError, match="free to move: translation along y and z; it is in no"):
+        run(problem, Step("push", 1, {}, pressure={"b.top": 1.0}))
+
+
 @pytest.mark.parametrize(
     ("ideal", "surface", "directions"),
     [

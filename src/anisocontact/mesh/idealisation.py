@@ -319,7 +319,8 @@ class Axisymmetric(_Plane):
     def resisted(self, centre: Floats) -> Floats:
         """As of `Idealisation`: all but `t_y` and the turn about the axis, `u_z ~ x`."""
         t_x, _, t_z, w_x, w_y, w_z = np.eye(6)
-        return np.array([t_x, w_z, w_x, t_z + centre[0] * w_y])
+        away = np.hypot(1.0, centre[0])  # a thin ring's row is of the size of the others
+        return np.array([t_x, w_z, w_x, (t_z + centre[0] * w_y) / away])
 
     def check_reference(self, point: Floats, field: str) -> None:
         """As of `Idealisation`: it is on the axis."""
