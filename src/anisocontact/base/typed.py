@@ -12,7 +12,8 @@ import math
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, wraps
+from functools import cache, partial, wraps
+from itertools import chain
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, cast
@@ -56,17 +57,17 @@ def typed[F: Callable[..., Any]](made: F) -> F:
     return cast(F, _checked(made))
 
 
+#: Says whether a value is of a type.
+type _Judge = Callable[[Any], bool]
+
+
 def _checked(function: Any) -> Any:
     @wraps(function)
     def checked(*args: Any, **kwargs: Any) -> Any:
-        try:
-            given = _signature(function).bind_partial(*args, **kwargs).arguments
-        except TypeError:  # said by Python, of the call itself
-            return function(*args, **kwargs)
-        hints = _hints(function)
-        for name, value in given.items():
-            if name in hints and not _fits(hints[name], value):
-                place, part, hint = _wrong_part(name, value, hints[name])
+        names, judges = _arguments(function)
+        for name, value in chain(zip(names, args, strict=False), kwargs.items()):
+            if name in judges and not judges[name](value) and _binds(function, args, kwargs):
+                place, part, hint = _wrong_part(name, value, _hints(function)[name])
                 text = f"{_shown(part)} given, {_needed(hint)} needed"
                 raise InputError(" ".join(text.split()), field=place)
         return function(*args, **kwargs)
@@ -74,9 +75,27 @@ def _checked(function: Any) -> Any:
     return checked
 
 
+def _binds(function: Any, args: Any, kwargs: Any) -> bool:
+    """Whether a function can be called so at all, of which Python speaks itself."""
+    try:
+        _signature(function).bind_partial(*args, **kwargs)
+    except TypeError:
+        return False
+    return True
+
+
 @cache
 def _signature(function: Any) -> inspect.Signature:
     return inspect.signature(function)
+
+
+@cache
+def _arguments(function: Any) -> tuple[tuple[str, ...], dict[str, _Judge]]:
+    """Names of the arguments that are given by place, and what judges those with a type."""
+    parameters = _signature(function).parameters.values()
+    by_place = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    names = tuple(p.name for p in parameters if p.kind in by_place)
+    return names, {name: _judge(hint) for name, hint in _hints(function).items()}
 
 
 @cache
@@ -92,18 +111,24 @@ def _hints(function: Any) -> dict[str, Any]:
     return {name: hint for name, hint in hints.items() if name in single and name != "return"}
 
 
-def _fits(hint: Any, value: Any) -> bool:
-    """Whether a value is of a type; so are values of types that nothing is known of."""
+@cache
+def _judge(hint: Any) -> _Judge:
+    """What judges values of a type, made once; it takes all for types that nothing is known of."""
     if hint is npt.ArrayLike:
-        return _is_array(value)
+        return _is_array
     if (meant := _meant(hint)) is not None:
-        return _fits(meant, value)
+        return _judge(meant)
     origin, of = typing.get_origin(hint), typing.get_args(hint)
     if origin in (typing.Union, types.UnionType):
-        return any(_fits(one, value) for one in of)
+        several = [_judge(one) for one in of]
+        return lambda value: any(fits(value) for fits in several)
     if isinstance(origin, type):
-        return _fits_generic(origin, of, value)
-    return _fits_class(hint, value) if isinstance(hint, type) else True
+        return partial(_fits_generic, origin, of)
+    return _judge_class(hint) if isinstance(hint, type) else lambda value: True
+
+
+def _fits(hint: Any, value: Any) -> bool:
+    return _judge(hint)(value)
 
 
 def _meant(hint: Any) -> Any:
@@ -119,21 +144,22 @@ def _is_array(value: Any) -> bool:
         return False
 
 
-def _fits_class(kind: type[Any], value: Any) -> bool:
+def _judge_class(kind: type[Any]) -> _Judge:
     if kind in (object, Any):
-        return True
-    if kind is bool:
-        return isinstance(value, bool | np.bool_)
+        return lambda value: True
     if kind in (int, float):
-        number = Integral if kind is int else Real
-        value = value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
-        is_number = isinstance(value, number) and not isinstance(value, bool | np.bool_)
-        return is_number and _counts(value)
-    if kind is Path:
-        return isinstance(value, str | Path)
+        return partial(_is_number, Integral if kind is int else Real)
     if getattr(kind, "_is_protocol", False):
-        return all(hasattr(value, name) for name in typing.cast(Any, kind).__protocol_attrs__)
-    return isinstance(value, kind)
+        names = typing.cast(Any, kind).__protocol_attrs__
+        return lambda value: all(hasattr(value, name) for name in names)
+    accepted = {bool: (bool, np.bool_), Path: (str, Path)}.get(kind, (kind,))
+    return lambda value: isinstance(value, accepted)
+
+
+def _is_number(kind: type[Any], value: Any) -> bool:
+    value = value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
+    is_number = isinstance(value, kind) and not isinstance(value, bool | np.bool_)
+    return is_number and _counts(value)
 
 
 def _counts(value: Any) -> bool:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -178,9 +180,14 @@ def raw_state(state: State) -> npt.NDArray[np.uint8]:
         >>> raw_state(np.zeros(3, dtype=STATE)).shape == (3, STATE.itemsize)
         True
     """
-    fields = getattr(getattr(state, "dtype", None), "fields", None) or {}
-    if np.ndim(state) != 1 or any(
-        fields.get(name) != place for name, place in (STATE.fields or {}).items()
-    ):
+    dtype = getattr(state, "dtype", None)
+    if not isinstance(dtype, np.dtype) or state.ndim != 1 or not _begins_as_state(dtype):
         raise InputError("no states given, those that a response has are needed", "state")
-    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), state.dtype.itemsize)
+    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), dtype.itemsize)
+
+
+@lru_cache(maxsize=64)
+def _begins_as_state(dtype: np.dtype[Any]) -> bool:
+    """Whether the fields of a state are where they are in `STATE`."""
+    fields, own = dict(dtype.fields or {}), dict(STATE.fields or {})
+    return all(fields.get(name) == place for name, place in own.items())
