@@ -118,7 +118,7 @@ class SlidingRule:
 
 def state_layout() -> list[Any]: ...
 
-state_size: int = 280
+state_size: int = 296
 
 class Law:
     def __init__(
