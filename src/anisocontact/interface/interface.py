@@ -165,7 +165,7 @@ class Interface(Remade):
         Args:
             state: Committed state, (n,) of `STATE`.
             x: Slave points, (n, 3) [length].
-            dt: Time step >= 0 [time]; without meaning for rate-independent laws.
+            dt: Time step > 0 [time]; without meaning for rate-independent laws.
             tangent: Whether dt/dx is wanted.
             slave: The slave's surface, which carries the directions that lie on it, and whose turn
                 against the master turns the slip of `transport`.
@@ -178,8 +178,8 @@ class Interface(Remade):
                 those of the states; a time step that is none; or arguments of other types.
         """
         x = points(x, 3, rows=len(state))
-        if not 0.0 <= dt < np.inf:
-            raise InputError(f"{dt!r} given, must be >= 0", "dt")
+        if not 0.0 < dt < np.inf:
+            raise InputError(f"{dt!r} given, must be > 0", "dt")
         if slave is None and self.needs_slave:
             raise InputError("'slave' given, but slave points alone carry none", self.needs_slave)
         own = (slave or POINTS_ALONE).arrays
