@@ -228,3 +228,65 @@ def test_contacts_are_the_same_by_their_slave_and_their_master():
     assert pairs[0].same_pair(pairs[1])
     assert not pairs[0].same_pair(Contact(model, "base.top", "block.bottom", laws[0]))
     assert not pairs[0].same_pair(on_plate)
+
+
+def _pressed(box, *, moved: str = ""):
+    """A box that is pressed on a plate by 0.01, and who moves its nodes up by 0.1: when."""
+    import ufl
+
+    space, up = _space(box), np.array([0.0, 0.0, 0.1])
+    bottom, top = (
+        dolfinx_mesh.locate_entities_boundary(box, 2, lambda x, z=z: np.isclose(x[2], z))
+        for z in (0.0, 1.0)
+    )
+    held = fem.locate_dofs_topological(space, 2, top)
+    model = Model.of(space, {"pad.sole": bottom})
+    u, v = fem.Function(space), ufl.TestFunction(space)
+    down = fem.Constant(box, np.array([0.0, 0.0, -0.01]))
+    form = ufl.inner(ufl.sym(ufl.grad(u)), ufl.grad(v)) * ufl.dx
+    if moved == "before":
+        box.geometry.x[:] += up
+    plate = make_surface("plane", point=box.geometry.x.min(axis=0), normal=(0, 0, 1))
+    contact = Contact(model, "pad.sole", plate, Friction(coefficients=0.3))
+    if moved == "between contacts":
+        box.geometry.x[:] += up
+        Contact(model, "pad.sole", plate, Friction(coefficients=0.3))
+    if moved == "between":
+        box.geometry.x[:] += up
+    problem = ContactProblem(form, u, bcs=[fem.dirichletbc(down, held, space)], contacts=[contact])
+    if moved == "after":
+        problem.solve()
+        box.geometry.x[:] += up
+    problem.solve()
+    return contact.resultant()[0]
+
+
+@pytest.mark.parametrize("when", ["between contacts", "between", "after"])
+def test_nodes_that_move_under_a_contact_are_one_line(when):
+    """The form would have gone with them, the contact not: it pressed 3.5 times as hard."""
+    with pytest.raises(InputError, match=r"nodes of the mesh were moved by up to 0\.1 since"):
+        _pressed(_box(), moved=when)
+
+
+def test_nodes_that_move_before_contacts_are_made():
+    """They are where the contact finds them: forces are those of the mesh that stayed."""
+    stayed, moved = (_pressed(_box(), moved=when) for when in ("", "before"))
+    np.testing.assert_allclose(moved, stayed, rtol=0.0, atol=1e-9 * abs(stayed[2]))
+
+
+@pytest.mark.parametrize("other", ["of its own", "of another order", "of another mesh"])
+def test_a_condition_on_another_space_is_one_line(other):
+    """Its numbers mean other unknowns, of which the wrong ones would be held."""
+    import ufl
+
+    mesh = _box()
+    space, order = _space(mesh), 2 if other == "of another order" else 1
+    elsewhere = _space(_box() if other == "of another mesh" else mesh, ("Lagrange", order, (3,)))
+    u, v = fem.Function(space), ufl.TestFunction(space)
+    form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
+    nodes = np.arange(4, dtype=np.int32)
+    one, wrong = (fem.dirichletbc(np.zeros(3), nodes, held) for held in (space, elsewhere))
+    part = fem.dirichletbc(0.0, nodes, space.sub(1))
+    ContactProblem(form, u, bcs=[one, part])
+    with pytest.raises(InputError, match=r"^bcs\[1\]: is defined on another space than u$"):
+        ContactProblem(form, u, bcs=[one, wrong])

@@ -77,6 +77,7 @@ __all__ = [
     "middle_nodes",
     "prescribe",
     "prescribed_rows",
+    "prescribes_in",
     "release_unreferenced",
     "scalar_element",
     "ufl",
@@ -316,6 +317,11 @@ def prescribed_rows(bcs: Sequence[Any]) -> Locals:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)
+
+
+def prescribes_in(bc: Any, space: Any) -> bool:
+    """Whether a Dirichlet condition is on a space, or a sub-space of it."""
+    return bool(space._cpp_object.contains(bc.function_space))
 
 
 def release_unreferenced(comm: MPI.Comm) -> None:

@@ -25,6 +25,7 @@ from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import STATUS, ContactLaw, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
+from anisocontact.mesh.at_rest import check_at_rest
 from anisocontact.rigid import RigidBody
 
 
@@ -136,12 +137,21 @@ class Contact(Pass):
             degree, current_area, augmentation, adjust, reach, self_contact, apart, mortar
         ).decided(model, slave, master if isinstance(master, str) else None)
         self._made_of = model, master, law, options
+        check_at_rest(model, "model")
         parts = parts_of(model, slave, master, law, options)
         super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
         self.physical_adhesion, self.goes_on = True, False
         self.facet_of_point = self.slave_points.facet
+
+    def check_at_rest(self) -> None:
+        """Refuse a mesh that was moved since the contact was made; collective.
+
+        Raises:
+            InputError: A node is elsewhere.
+        """
+        check_at_rest(self._made_of[0], f"contact {self.name!r}")
 
     def same_pair(self, other: Contact) -> bool:
         """Whether another contact has the same slave and the same master."""

@@ -70,8 +70,8 @@ class ContactProblem(AssembledSystem):
         balance: Forces of the last evaluation.
 
     Raises:
-        InputError: A contact lives on another space than `u`, is given twice, or its rigid body
-            is free.
+        InputError: A contact or a condition lives on another space than `u`, a contact is given
+            twice, or its rigid body is free.
 
     See `examples/dolfinx_script/rubber_pad.py` for a whole script.
 
@@ -118,7 +118,7 @@ class ContactProblem(AssembledSystem):
             layout,
             bodies,
             Contacts(contacts),
-            Dirichlet(self.bcs),
+            Dirichlet(self.bcs, space),
             Constraints(layout.new_vector()),
             RigidBodies([], space.mesh.comm),
             fields=self._fields,
@@ -148,8 +148,9 @@ class ContactProblem(AssembledSystem):
         Raises:
             RuntimeError: No convergence, or a body is behind its master; `u` and the history are as
                 before.
-            InputError: The time increment is not positive, or nothing holds a part of the mesh: no
-                stiffness of the form, no condition and no contact that touches.
+            InputError: The time increment is not positive, nodes of the mesh were moved since
+                contacts were made, or nothing holds a part of the mesh: no stiffness of the form,
+                no condition and no contact that touches.
         """
         if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
@@ -161,6 +162,8 @@ class ContactProblem(AssembledSystem):
 
     def _solve(self, dt: float) -> int:
         """Newton iterations to the equilibrium, which is accepted."""
+        for contact in self.contacts:
+            contact.check_at_rest()
         terms = self._assembly.terms
         terms.set_load_factor(1.0, dt)
         before = self.u.x.array.copy()

@@ -15,6 +15,7 @@ from anisocontact.base.typed import typed
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
+from anisocontact.mesh.at_rest import check_at_rest
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
@@ -193,8 +194,9 @@ class Problem(ReportedSystem):
             again: Whether it had begun before, in a run that now goes on.
 
         Raises:
-            InputError: See `Supports.begin` and `DeadLoads.begin`.
+            InputError: See `Supports.begin` and `DeadLoads.begin`; or nodes of the mesh were moved.
         """
+        check_at_rest(self.model, "model")
         start = self.u.x.array.copy()
         self._memory.begin()
         begin_step(self._parts, step, start, self._accepted.reaction, again)

@@ -18,6 +18,7 @@ from anisocontact.base.fenicsx import (
     create_force,
     prescribe,
     prescribed_rows,
+    prescribes_in,
     ufl,
 )
 from anisocontact.base.form_matrix import FormMatrix
@@ -105,9 +106,16 @@ class Dirichlet:
 
     Args:
         bcs: The conditions; their values may change.
+        space: Space of the unknowns.
+
+    Raises:
+        InputError: A condition lives on another space, whose numbers mean other unknowns.
     """
 
-    def __init__(self, bcs: Sequence[Any]) -> None:
+    def __init__(self, bcs: Sequence[Any], space: Any) -> None:
+        for i, bc in enumerate(bcs):
+            if not prescribes_in(bc, space):
+                raise InputError("is defined on another space than u", f"bcs[{i}]")
         self._bcs = bcs
 
     @property
