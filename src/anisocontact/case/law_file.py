@@ -22,6 +22,7 @@ from anisocontact.interface import (
     PythonLaw,
     TangentialLaw,
 )
+from anisocontact.interface.tangential_law import check_own_variables
 from anisocontact.laws import SIDES
 
 
@@ -155,7 +156,4 @@ def module_at(
 def _check_law(law: Any, name: str) -> None:
     if not callable(getattr(law, "update", None)):
         raise InputError(f"{name} has no method update(state, kinematics)", "law")
-    count = getattr(law, "internal", None)
-    if not isinstance(count, int) or isinstance(count, bool) or count < 0:
-        text = f"{name}.internal is {count!r}, the number of its own variables needed, 0 or more"
-        raise InputError(text, "law")
+    check_own_variables(law)

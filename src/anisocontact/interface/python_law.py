@@ -27,6 +27,7 @@ from anisocontact.interface.tangential_law import (
     LawResult,
     LawState,
     TangentialLaw,
+    check_own_variables,
     evaluate,
     law_stiffness,
 )
@@ -62,7 +63,7 @@ class PythonLaw:
         adhesion: None, as `friction`: they are laws of the core.
 
     Raises:
-        InputError: Another word for the body.
+        InputError: Another word for the body, or a law without a number of variables.
 
     Example:
         >>> from anisocontact.interface import ContactLaw, Interface
@@ -101,6 +102,7 @@ class PythonLaw:
         if directions_on not in SIDES:
             text = f'{directions_on!r} given, "master" or "slave" needed'
             raise InputError(text, "directions_on")
+        check_own_variables(law)
         self.law, self.friction_directions = law, directions
         self.carried: tuple[Carried, ...] = (Carried("directions", directions, directions_on),)
         self.dtype = state_type(law.internal)

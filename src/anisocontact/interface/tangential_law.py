@@ -108,6 +108,21 @@ class TangentialLaw(Protocol):
         ...
 
 
+def check_own_variables(law: Any) -> None:
+    """Refuse a law that does not say how many variables of its own a point has.
+
+    Raises:
+        InputError: `internal` is no whole number, or below zero.
+    """
+    count = getattr(law, "internal", None)
+    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 0:
+        raise InputError(
+            f"{type(law).__name__}.internal is {count!r}, the number of its own variables needed, "
+            "0 or more",
+            "law",
+        )
+
+
 def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> LawResult:
     """The output of a law, checked.
 
