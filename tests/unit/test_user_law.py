@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, RunWarning
 from anisocontact.base.fenicsx import ufl
 from anisocontact.bulk import (
     NonlinearBulk,
@@ -20,7 +21,7 @@ from anisocontact.bulk import (
     user_material,
 )
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver import Problem
+from anisocontact.solver import Problem, Solver, Step
 
 ONE = np.eye(9).reshape(3, 3, 3, 3)
 
@@ -132,3 +133,33 @@ def test_stress_at_rest_is_told() -> None:
     }
     (said,) = Problem(build_box(boxes), materials).check([])
     assert said.startswith("body 'a': there is stress in it where it is not strained, as much as a")
+
+
+def _spring(gradient: Any) -> Any:
+    """Energy that is least at rest."""
+    moved = gradient - ufl.Identity(3)
+    return ufl.inner(moved, moved)
+
+
+def test_a_script_hears_what_a_run_tells() -> None:
+    """Requirement: who names nobody that is to be told gets Python warnings; who does gets none."""
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    stressed = {"bar": UserEnergy(lambda F: 1e-3 * ufl.inner(F, F) + _spring(F), young=2.0)}
+    held = {name: {"x": 0.0, "y": 0.0, "z": 0.0} for name in ("bar.bottom", "bar.top")}
+
+    def solver() -> Solver:
+        return Solver(Problem(model, stressed), [Step("hold", 1, held)])
+
+    told: list[str] = []
+    noted: list[str] = []
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        list(solver().run(on_warning=told.append))
+        list(solver().run(on_note=noted.append))
+        assert not heard
+        list(solver().run())
+    assert told
+    assert [line for line in noted if line.startswith("warning: ")] == [
+        f"warning: {t}" for t in told
+    ]
+    assert [(one.category, str(one.message)) for one in heard] == [(RunWarning, t) for t in told]

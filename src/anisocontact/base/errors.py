@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,8 +12,10 @@ __all__ = [
     "MachineError",
     "ModelWarning",
     "RunError",
+    "RunWarning",
     "one_line",
     "printable",
+    "tell_script",
     "within",
 ]
 
@@ -116,3 +119,21 @@ class ModelWarning(UserWarning):
         >>> warnings.simplefilter("error", ModelWarning)  # a script that is to stop there
         >>> warnings.simplefilter("default", ModelWarning)
     """
+
+
+class RunWarning(ModelWarning):
+    """The same of a run of `Solver`, where nobody was named who is to be told.
+
+    Example:
+        >>> issubclass(RunWarning, ModelWarning)
+        True
+    """
+
+
+def tell_script(text: str) -> None:
+    """Give a `RunWarning`.
+
+    Args:
+        text: The line.
+    """
+    warnings.warn(text, RunWarning, stacklevel=3)

@@ -218,7 +218,7 @@ class UserEnergy(Hyperelastic):
         young: Young's modulus at rest, the scale of the default penalty, stress.
 
     Example:
-        >>> rubber = UserEnergy(lambda F: 0.5 * (ufl.inner(F, F) - 3), young=1.0)
+        >>> rubber = UserEnergy(lambda F: 0.5 * ufl.inner(F, F) - ufl.ln(ufl.det(F)), young=2.0)
         >>> rubber.linear
         False
     """

@@ -9,6 +9,7 @@ from typing import NoReturn
 import numpy as np
 
 from anisocontact.base.blas_threads import with_one_thread
+from anisocontact.base.errors import tell_script
 from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
@@ -152,7 +153,7 @@ class Solver:
             on_cut: Called when an increment failed and is cut.
             on_note: Called with what is worth a line in a log.
             on_warning: Called with what the user should look at, as soon as it happens; goes to
-                `on_note` if not given.
+                `on_note` if not given, and is a `RunWarning` if that is not given either.
 
         Yields:
             Every accepted increment, or part of one; the problem holds its state until the next.
@@ -162,7 +163,8 @@ class Solver:
         """
         self._on_iteration, self._on_cut = on_iteration, on_cut
         note = on_note or (lambda _: None)
-        warn = on_warning or (lambda text: note(f"warning: {text}"))
+        noted = tell_script if on_note is None else lambda text: note(f"warning: {text}")
+        warn = on_warning or noted
         for text in self._doubtful:
             warn(text)
         self._energy.begin()
