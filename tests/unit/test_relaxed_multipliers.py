@@ -98,6 +98,58 @@ def test_a_run_goes_on_within_a_part_that_penalties_hold(tmp_path: Path, gone_on
     assert ours["relaxed"] == theirs["relaxed"] and len(ours["relaxed"]) > 2
 
 
+OVER_THE_END = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [END, 1, 0.5]
+cells = [2, 1, 1]
+[mesh.box.base]
+origin = [0, 0, -1]
+size = [1, 1, 1]
+cells = [2, 1, 1]
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0
+[material.base]
+model = "linear-elastic"
+E = 100
+nu = 0
+[[contact]]
+slave = "base.top"
+master = "block.bottom"
+friction = { coefficients = 0 }
+[[step]]
+name = "press"
+increments = 1
+[step.displacement]
+"block.top" = { x = 0, y = 0, z = -0.05 }
+"base.bottom" = { x = 0, y = 0, z = 0 }
+[solver]
+strategy = "direct"
+cuts = 1
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.usefixtures("never_held")
+@pytest.mark.parametrize(("end", "told"), [(0.645, True), (0.9, False)])
+def test_ends_of_a_master_that_reach_nodes_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], end: float, told: bool
+) -> None:
+    """Of the last facets of the base 29 % are covered, and next to nothing of its end nodes.
+
+    Where 80 % are these have more than half of their weight.
+    """
+    (tmp_path / "case.toml").write_text(OVER_THE_END.replace("END", str(end)))
+    assert main(["run", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out")]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "have penalties instead" in said
+    line = "2 slave nodes touch with less than 5% of the weight of a node opposite to the end of"
+    assert (line in said) == told
+
+
 @pytest.mark.usefixtures("never_held")
 @pytest.mark.parametrize("method", ['method = "augmented"', "tolerance = 1e-5"])
 def test_multipliers_that_are_asked_for_are_required(tmp_path: Path, method: str) -> None:

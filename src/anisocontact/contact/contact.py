@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
 from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.defaults import WithoutPenalty, exact
@@ -286,6 +287,11 @@ class Contact(Pass):
     def counted(self) -> Flags:
         """Slave points of the accepted increment that count among peaks, (n,)."""
         return self.slave_points.peaks(self.areas)
+
+    def slivers(self) -> int:
+        """Slave points that touch without counting among peaks, over all ranks; collective."""
+        touching = self.state["status"] != OPEN
+        return int(self._comm.allreduce(int(np.count_nonzero(touching & ~self.counted()))))
 
     def touching(self) -> Floats:
         """Area of each slave point on which it touches, accepted increment, (n,), length^2."""

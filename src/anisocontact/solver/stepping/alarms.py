@@ -13,6 +13,12 @@ RELAXED = (
     "the multipliers of the contacts did not converge, so this increment, and later ones like it, "
     "have penalties instead; the summary has the penetration"
 )
+#: What is said where the end of a master reaches nodes where penalties hold instead of multipliers.
+SLIVERS = (
+    "with less than 5% of the weight of a node opposite to the end of the master: a gap is "
+    "extrapolated from there, and closing it can push the end away, so that there is no "
+    "multiplier; take the side that does not reach beyond the other as the slave"
+)
 #: What is said of points whose pressure nothing says.
 HELD = (
     "where supports hold both sides along the normal: no equilibrium says what the pressure is "
@@ -64,3 +70,6 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"missed {accepted.step}", missed_event(accepted)
     if accepted.relaxed:
         yield "relaxed", RELAXED
+    for name, count in accepted.slivers.items():
+        nodes = "slave node touches" if count == 1 else "slave nodes touch"
+        yield f"slivers {name}", f"contact {name!r}: {count} {nodes} {SLIVERS}"

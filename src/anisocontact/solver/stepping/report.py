@@ -67,6 +67,8 @@ class Accepted:
         past_cuts: Largest share of its weight by which a slave node has turned with a sector past
             the end of its master, by name of the contact; contacts without any are left out.
         relaxed: Whether penalties hold in it, as no multipliers were found.
+        slivers: Slave nodes that touch on less than 5 % of their weight where penalties hold, by
+            name of the contact; contacts without any are left out.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
 
@@ -102,6 +104,7 @@ class Accepted:
     behind: tuple[Behind, ...] = ()
     past_cuts: dict[str, float] = field(default_factory=dict)
     relaxed: bool = False
+    slivers: dict[str, int] = field(default_factory=dict)
     event: str = ""
     missed: str = ""
 
