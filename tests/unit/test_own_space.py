@@ -290,3 +290,18 @@ def test_a_condition_on_another_space_is_one_line(other):
     ContactProblem(form, u, bcs=[one, part])
     with pytest.raises(InputError, match=r"^bcs\[1\]: is defined on another space than u$"):
         ContactProblem(form, u, bcs=[one, wrong])
+
+
+@pytest.mark.parametrize("mortar", [True, False])
+@pytest.mark.parametrize("dt", [0.0, -1.0, np.nan, np.inf])
+def test_a_time_increment_that_is_none_is_one_line(mortar, dt):
+    """Points that are pressed into facets were open in it, without a word."""
+    upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+    model = build_box({"block": upper, "base": BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))})
+    law = ContactLaw(NormalLaw(penalty=9.0), Adhesion(stiffness=1), Friction(coefficients=0.3))
+    contact = Contact(model, "block.bottom", "base.top", law, mortar=mortar)
+    down = np.zeros_like(model.positions)
+    down[model.facet_nodes("block.bottom"), 2] = -0.01
+    assert contact.update(down, 1.0).pressure.max() > 0.0
+    with pytest.raises(InputError, match=rf"^dt: {dt!r} given, must be > 0$"):
+        contact.update(down, dt)

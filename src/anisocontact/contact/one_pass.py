@@ -195,14 +195,16 @@ class Pass:
 
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
-            dt: Time increment.
+            dt: Time increment > 0.
 
         Returns:
             The response; the committed history is unchanged.
 
         Raises:
-            InputError: A law in Python failed.
+            InputError: The time increment is not positive, or a law in Python failed.
         """
+        if not 0.0 < dt < np.inf:
+            raise InputError(f"{dt!r} given, must be > 0", "dt")
         if self.master.place(u, self.state, self.trials.start, self.last.state):
             self.trials.forget()
         self._dt = dt
