@@ -151,8 +151,8 @@ class FreeBody:
         return any(self.contacts[0].space.mesh.comm.allgather(closed))
 
     def _count(self, *statuses: str) -> int:
-        laws = ((c, c.interface) for c in self.contacts)
-        stiff = [c for c, i in laws if not i.tangential.in_python and i.penalties()[1] > 0]
+        laws = ((c, c.interface.tangential) for c in self.contacts)
+        stiff = [c for c, law in laws if not law.in_python and law.holds_all_ways()]
         return sum(c.counts()[status] for c in stiff for status in statuses)
 
     def _stiff(self) -> bool:
