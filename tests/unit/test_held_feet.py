@@ -148,12 +148,23 @@ def _contact(codes: list[int]) -> Any:
         ([3, 6, 9, 12, 15, 18, 21], [1.0] * 7, False),
         ([3, 6, 3, 3, 3, 3, 3], [1.0] * 7, False),
         ([3, 6, 3, 6, 3, 6, 3], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.49], False),
-        ([3, 6, 3, 6, 3, 6], [1.0] * 6, False),
+        ([3, 6, 3, 6, 3, 6], [1.0, 0.9, 0.98, 0.88, 0.96, 0.86], False),
+        ([3, 6, 3, 6], [0.3, 0.2, 0.3, 0.2], True),
+        ([6, 6, 3, 6, 3, 6], [9.0, 3.0, 1.0, 0.9995, 0.9995, 0.999], True),
+        ([3, 6, 3, 6], [0.3, 0.2, 0.3, 0.1996], False),
+        ([3, 6, 3], [0.3, 0.3, 0.3], False),
+        ([3, 3, 3, 6], [0.3, 0.2, 0.3, 0.2], False),
     ],
-    ids=["to and fro", "round a corner", "later", "slides on", "once", "halved", "too early"],
+    ids=[
+        *("to and fro", "round a corner", "later", "slides on", "once", "halved", "too early"),
+        *("repeats", "gains nothing", "falls a little", "three alone", "repeats, but stays"),
+    ],
 )
 def test_points_that_hop_are_held(codes, residuals, hops):
-    """Two returns to a facet of late, where the residual has not halved in six iterations."""
+    """Two returns to a facet of late, where the residual has not halved in six iterations.
+
+    Or where it repeats every second time, to a thousandth of it: nothing would end that.
+    """
     contact = _contact(codes)
     watch = StatusWatch([contact])
     for residual in residuals:

@@ -18,6 +18,8 @@ CHANGES = 4
 RETURNS = 2
 #: Iterations over which a residual that does not fall to `GAIN` of what it was has come to a halt.
 HALT, GAIN = 6, 0.5
+#: Residuals that repeat every second time, to this share of them, never fall.
+REPEATED, SAME = 4, 1e-3
 
 
 class StatusWatch:
@@ -51,11 +53,20 @@ class StatusWatch:
 
         While it falls they may come to rest by themselves, at the closest facet.
         """
-        known = self._residuals
-        if len(known) <= HALT or known[-1] <= GAIN * known[-1 - HALT]:
+        if not self._halted() and not self._repeats():
             return
         for contact, hops in zip(self._contacts, self.hopping(), strict=True):
             contact.hold(hops)
+
+    def _halted(self) -> bool:
+        """Whether the residual has not fallen to its share over some corrections."""
+        known = self._residuals
+        return len(known) > HALT and known[-1] > GAIN * known[-1 - HALT]
+
+    def _repeats(self) -> bool:
+        """Whether corrections go to and fro, or gain nothing."""
+        last = np.array(list(self._residuals)[-REPEATED:])
+        return len(last) == REPEATED and bool(np.all(abs(last[2:] - last[:-2]) <= SAME * last[2:]))
 
     def history(self, contact: int) -> Ints:
         """Status of the points of a contact, (iterations, points), the latest at the end."""
