@@ -104,8 +104,8 @@ def _compare(out: dict[str, float], name: str, one: np.ndarray, other: np.ndarra
             continue
         assert np.array_equal(np.isfinite(a), np.isfinite(b)), name
         a, b = np.where(np.isfinite(a), a, 0.0), np.where(np.isfinite(b), b, 0.0)
-        # of an augmented contact some of the stored energies are what its tolerance leaves; tangents
-        # of mortar nodes rise out of their plane by rounding alone
+        # of an augmented contact some of the stored energies are what its tolerance leaves;
+        # tangents of mortar nodes rise out of their plane by rounding alone
         kind = next((k for k in ("energy", "slave") if field.startswith(k)), None)
         alike = [n for n in one.dtype.names or () if kind and n.startswith(kind)]
         scale = (
