@@ -13,7 +13,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.solver.strategies.newton import STILL_OVER, STUCK_OVER, Newton
+from anisocontact.solver.strategies.newton import STUCK_OVER, Newton
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 
@@ -71,24 +71,20 @@ def _at(system: Valley, a: float, b: float) -> Vec:
     return x
 
 
-def _solved(full_steps: bool, steepness: float = 1e6, **options: Any) -> tuple[Any, np.ndarray]:
-    system = Valley(steepness)
+def _solved(full_steps: bool, **options: Any) -> tuple[Any, np.ndarray]:
+    system = Valley(1e6)
     newton, x = _newton(system, **options), _at(system, -1.2, 1.44)
     result = newton.solve(x, full_steps)
     newton.close()
     return result, x.array_r.copy()
 
 
-@pytest.mark.parametrize(("steepness", "given_up"), [(1e2, STUCK_OVER), (1e6, STILL_OVER)])
-def test_a_search_that_creeps_is_given_up(steepness: float, given_up: int) -> None:
-    """It would need hundreds of corrections; what comes next are full steps.
-
-    In a valley of 100 corrections gain up to 8 in a thousand, in a steeper one next to nothing.
-    """
-    result, _ = _solved(full_steps=False, steepness=steepness)
+def test_a_search_that_creeps_is_given_up():
+    """It would need hundreds of corrections; what comes next are full steps."""
+    result, _ = _solved(full_steps=False)
     assert "the line search got stuck" in result.reason
-    assert result.iterations == given_up
-    again, x = _solved(full_steps=True, steepness=steepness)
+    assert result.iterations == STUCK_OVER
+    again, x = _solved(full_steps=True)
     assert not again.reason
     assert again.iterations <= 3
     np.testing.assert_allclose(x, 1.0, rtol=1e-12)

@@ -47,8 +47,6 @@ DIVERGED = 1e8
 #: A line search whose residual keeps more than this share of itself over so many corrections
 #: stands in front of a jump of the law, and would stay there.
 STUCK, STUCK_OVER = 0.5, 8
-#: So does one whose residual each of so many corrections changes by less than this share of it.
-STILL, STILL_OVER = 1e-3, 3
 #: With multipliers that follow a residual rises and falls while points find their status; it goes
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
@@ -375,12 +373,8 @@ class Newton:
     def _stuck(self) -> bool:
         """Whether a line search gains next to nothing."""
         known = self._residuals
-        if self.snes.getLineSearch().getType() == PETSc.SNESLineSearch.Type.BASIC:
-            return False
-        if len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]:
-            return True
-        last = np.array(known[-STILL_OVER - 1 :])
-        return len(last) > STILL_OVER and bool(np.all(np.abs(np.diff(last)) < STILL * last[:-1]))
+        searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
+        return searching and len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
 
     def _explain(self, reason: int) -> str:
         reasons = PETSc.SNES.ConvergedReason
