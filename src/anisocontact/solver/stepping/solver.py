@@ -389,7 +389,7 @@ class Solver:
         contacts, energies = self.problem.contacts, self.problem.energies()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
         held = {c.name: c.undetermined() for c in contacts}
-        slivers = {c.name: c.slivers() for c in contacts}
+        slivers = {c.name: c.slivers() for c in contacts} if outcome.relaxed else {}
         return Accepted(
             step=step.name,
             step_index=self.place.step,
@@ -409,7 +409,7 @@ class Solver:
             behind=tuple(self.problem.sides.partly),
             past_cuts=self._cut_faces.lost(),
             relaxed=outcome.relaxed,
-            slivers={name: n for name, n in slivers.items() if n and outcome.relaxed},
+            slivers={name: n for name, n in slivers.items() if n},
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Ints
 from anisocontact.contact import Contact
+from anisocontact.solver.strategies.newton import repeats
 
 #: Iterations that are remembered.
 MEMORY = 8
@@ -18,8 +19,8 @@ CHANGES = 4
 RETURNS = 2
 #: Iterations over which a residual that does not fall to `GAIN` of what it was has come to a halt.
 HALT, GAIN = 6, 0.5
-#: Residuals that repeat every second time, to this share of them, never fall.
-REPEATED, SAME = 4, 1e-3
+#: So many residuals that repeat every second time never fall.
+REPEATED = 4
 
 
 class StatusWatch:
@@ -65,8 +66,8 @@ class StatusWatch:
 
     def _repeats(self) -> bool:
         """Whether corrections go to and fro, or gain nothing."""
-        last = np.array(list(self._residuals)[-REPEATED:])
-        return len(last) == REPEATED and bool(np.all(abs(last[2:] - last[:-2]) <= SAME * last[2:]))
+        last = list(self._residuals)[-REPEATED:]
+        return len(last) == REPEATED and repeats(last)
 
     def history(self, contact: int) -> Ints:
         """Status of the points of a contact, (iterations, points), the latest at the end."""

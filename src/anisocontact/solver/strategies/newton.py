@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -114,6 +114,18 @@ class System(Protocol):
     def soften(self) -> bool:
         """After a solution that failed: take penalties that are easier; whether to try again."""
         ...
+
+
+def repeats(residuals: Sequence[float]) -> bool:
+    """Whether each of some residuals is the last but one before it, to `SAME` of it.
+
+    Example:
+        >>> repeats([0.3, 0.2, 0.3, 0.2]), repeats([0.3, 0.2, 0.3, 0.19])
+        (True, False)
+    """
+    last = np.array(residuals)
+    with np.errstate(invalid="ignore"):  # far off they are infinite
+        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
 
 
 @dataclass(frozen=True)
@@ -367,8 +379,7 @@ class Newton:
         searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
         if searching or self._damping is not None or len(self._residuals) < CYCLE:
             return False
-        last = np.array(self._residuals[-CYCLE:])
-        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
+        return repeats(self._residuals[-CYCLE:])
 
     def _stuck(self) -> bool:
         """Whether a line search gains next to nothing."""
