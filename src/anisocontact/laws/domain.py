@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -14,9 +13,6 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import points
-
-if TYPE_CHECKING:
-    pass
 
 Pair = Sequence[float]
 Point = tuple[float, float]
@@ -213,19 +209,8 @@ def adhesion_domain(
     (n,) = _positive("pressure", (pressure,))
     c, s = math.cos(beta - alpha), math.sin(beta - alpha)
     f11, f22 = (c / m1) ** 2 + (s / m2) ** 2, (s / m1) ** 2 + (c / m2) ** 2
-    if e1 == 0.0:
-        return Strip(n / (e2 * math.sqrt(f22)), _line_angle(alpha))
-    if e2 == 0.0:
-        return Strip(n / (e1 * math.sqrt(f11)), _line_angle(alpha + 0.5 * math.pi))
-    a11, a22 = e1 * e1 * f11, e2 * e2 * f22
     a12 = e1 * e2 * (m1**-2 - m2**-2) * s * c
-    largest = 0.5 * (a11 + a22) + math.hypot(0.5 * (a11 - a22), a12)
-    root = e1 * e2 / (m1 * m2)  # of the product of the two, which keeps the small one exact
-    short = alpha + 0.5 * math.atan2(2.0 * a12, a11 - a22)
-    return Ellipse(
-        (n * math.sqrt(largest) / root, n / math.sqrt(largest)),
-        _line_angle(short + 0.5 * math.pi),
-    )
+    return _domain(e1 * e1 * f11, a12, e2 * e2 * f22, e1 * e2 / (m1 * m2), n, alpha)
 
 
 def domain_from_tensors(
@@ -260,15 +245,32 @@ def domain_from_tensors(
         raise InputError(f"{f.tolist()} given, symmetric positive definite needed", "friction")
     if not s.any():
         raise InputError("zero given, one direction at least needs a stiffness", "stiffness")
-    (m11, m12), (_, m22) = (s.T @ f @ s / n**2).tolist()
-    largest = 0.5 * (m11 + m22) + math.hypot(0.5 * (m11 - m22), m12)
-    long = 0.5 * math.atan2(2.0 * m12, m11 - m22) + 0.5 * math.pi
-    width = 1.0 / math.sqrt(largest)
+    (a11, a12), (_, a22) = (s.T @ f @ s).tolist()
     det = abs(float(np.linalg.det(s)))
-    if det <= RANK_LIMIT * float(np.sum(s * s)):
-        return Strip(width, _line_angle(long))
-    root = det * math.sqrt(float(np.linalg.det(f))) / n**2
-    return Ellipse((math.sqrt(largest) / root, width), _line_angle(long))
+    full = det > RANK_LIMIT * float(np.sum(s * s))
+    root = det * math.sqrt(float(np.linalg.det(f))) if full else 0.0
+    return _domain(a11, a12, a22, root, n)
+
+
+def _domain(
+    a11: float, a12: float, a22: float, root: float, pressure: float, angle: float = 0.0
+) -> Ellipse | Strip:
+    """Points x with x.Ax <= N^2.
+
+    Args:
+        a11: Component of A in two orthogonal axes.
+        a12: Component of A.
+        a22: Component of A.
+        root: Square root of det A, which keeps the small eigenvalue exact; 0 where A has rank one.
+        pressure: N.
+        angle: Angle of the first axis to the first coordinate [rad].
+    """
+    largest = 0.5 * (a11 + a22) + math.hypot(0.5 * (a11 - a22), a12)
+    width = pressure / math.sqrt(largest)
+    long = _line_angle(angle + 0.5 * math.atan2(2.0 * a12, a11 - a22) + 0.5 * math.pi)
+    if root == 0.0:
+        return Strip(width, long)
+    return Ellipse((pressure * math.sqrt(largest) / root, width), long)
 
 
 def rotation(angle: float) -> Floats:

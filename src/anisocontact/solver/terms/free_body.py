@@ -65,10 +65,6 @@ class FreeBody:
             self.nodes = self.nodes[where[self.nodes]]
             self.count = max(len(self.nodes), 1)
 
-    def moves_along(self, direction: Floats) -> float:
-        """Share of a unit translation in its motions that only contact can hold, 0 to 1."""
-        return float(np.linalg.norm(self.left[:, :3] @ direction))
-
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
 
