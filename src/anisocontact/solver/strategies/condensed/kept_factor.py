@@ -11,6 +11,7 @@ import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
+from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
 from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.steps import (
@@ -19,7 +20,6 @@ from anisocontact.solver.strategies.condensed.steps import (
     step_of_changes,
 )
 from anisocontact.solver.strategies.condensed.updated import COLUMN, UpdatedFactor
-from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.terms.persistent import Arrays
 
 #: Krylov iterations after which the factor is renewed, if it costs no more.
@@ -28,7 +28,7 @@ PATIENCE = 24
 #: 70 Gflop/s and 4.4 G entries/s, OpenBLAS on one core in single precision, and a quarter more
 #: for GMRES.
 _OPERATIONS_PER_ENTRY = 20.0
-#: See `Wear`: between increments much changes at once.
+#: See `FactorRenewal`: between increments much changes at once.
 _LAST, _MARGIN = 1, 1.0
 #: Iterations for a decimal with a factor that is new: between corrections something changes.
 _FRESH = 2.0
@@ -51,7 +51,7 @@ _OF_BASIS = 0.5
 _COLUMNS = 0.2
 #: Change of a row over the stiffness of the bodies that is a constraint.
 CONSTRAINT = 10.0
-#: Names of sparse matrices that are kept: of the factor and of the front; and of their wear.
+#: Names of sparse matrices that are kept, of the factor and the front; and of what they have cost.
 _FACTOR, _FRONT = "tangent", "tangent_shares"
 #: The same of the bases, see `ContactTangent`, that both were made in.
 _BASES = ("tangent_shares_basis", "tangent_basis")
@@ -80,7 +80,10 @@ class KeptFactor:
         self._bases: list[Sparse | None] = [None, None]
         # the last of `_held`, and what it is of
         self._last: tuple[Front, Sparse, Sparse] | None = None
-        self._wear, self._front_wear = Wear(_LAST, _MARGIN, _FRESH), Wear(_LAST, _MARGIN)
+        self._renewal, self._front_renewal = (
+            FactorRenewal(_LAST, _MARGIN, _FRESH),
+            FactorRenewal(_LAST, _MARGIN),
+        )
         self.factors = 0
         self.iterations = 0
 
@@ -104,7 +107,7 @@ class KeptFactor:
             if made:
                 begun = self.iterations
                 best, least = self._improved(best, b, rtol)
-                self._front_wear.add(self.iterations - begun, least)
+                self._front_renewal.add(self.iterations - begun, least)
         # what cannot be done better is still a direction for the line search
         return best if least < _USEFUL else None
 
@@ -113,7 +116,7 @@ class KeptFactor:
         front, factor = self._front, self._factor
         if factor is None or front is None:
             return {}
-        spent = {_SPENT: self._wear.persistent(), _FRONT_SPENT: self._front_wear.persistent()}
+        spent = {_SPENT: self._renewal.persistent(), _FRONT_SPENT: self._front_renewal.persistent()}
         bases = {n: one for n, one in zip(_BASES, self._bases, strict=True) if one is not None}
         matrices = {_FACTOR: factor.first, _FRONT: front.shares, **bases}
         flags = np.array([self._rounded, self._tangent.kind is np.float64])
@@ -148,8 +151,8 @@ class KeptFactor:
             {name[begin:]: one for name, one in kept.items() if name.startswith(f"{_FACTOR}_")}
         )
         self.factors += 1
-        self._wear.restore(kept[_SPENT])
-        self._front_wear.restore(kept[_FRONT_SPENT])
+        self._renewal.restore(kept[_SPENT])
+        self._front_renewal.restore(kept[_FRONT_SPENT])
 
     def forget(self) -> None:
         """Give back the memory; nothing can be solved any more without a new factor."""
@@ -159,7 +162,7 @@ class KeptFactor:
     def _serves(self) -> bool:
         """Whether the factor that there is may do for the tangent of now."""
         front, factor = self._front, self._factor
-        if front is None or factor is None or self._wear.worn or self._to_double:
+        if front is None or factor is None or self._renewal.due or self._to_double:
             return False
         held = front.own(self._held(front))
         if self._solutions(front, front.factor_operations) < PATIENCE:
@@ -170,7 +173,7 @@ class KeptFactor:
         found = factor.take(held, int(_COLUMNS * len(front.unknowns)))
         if found is None:
             return False
-        self._wear.spend(COLUMN * found)
+        self._renewal.spend(COLUMN * found)
         return True
 
     @property
@@ -183,7 +186,7 @@ class KeptFactor:
         front = self._front
         if front is None or self._to_double:
             return False
-        if self._front_wear.worn and self._moved(front):
+        if self._front_renewal.due and self._moved(front):
             return False
         self._factorise(front)
         return True
@@ -229,14 +232,14 @@ class KeptFactor:
     def _begin(self, front: Front) -> None:
         self._front, self._factor = front, None
         self._bases[0] = self._tangent.basis
-        self._front_wear.begin(self._solutions(front, front.operations))
+        self._front_renewal.begin(self._solutions(front, front.operations))
         self._factorise(front)
 
     def _factorise(self, front: Front) -> None:
         self._factor = None  # gives the memory back
         self._factor = self._made(front, front.own(self._held(front)))
         self._bases[1] = self._tangent.basis
-        self._wear.begin(self._solutions(front, front.factor_operations))
+        self._renewal.begin(self._solutions(front, front.factor_operations))
         self.factors += 1
 
     def _made(self, front: Front, held: Sparse) -> UpdatedFactor:
@@ -284,7 +287,7 @@ class KeptFactor:
             x, left = better, now / norm
             if left <= rtol or most <= 0:
                 break
-        self._wear.add(patience - most, left)
+        self._renewal.add(patience - most, left)
         return x, left
 
     def _krylov(self, step: Step, b: Reals, goal: float, most: int) -> tuple[Reals, float, int]:

@@ -10,13 +10,13 @@ import scipy
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
+from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
 from anisocontact.solver.strategies.condensed.touched import Touched
-from anisocontact.solver.strategies.condensed.wear import Wear
+from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
 from anisocontact.solver.strategies.once import once
-from anisocontact.solver.strategies.trust import Trust
 from anisocontact.solver.strategies.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -28,7 +28,7 @@ _MATRIX, _SLOPE, _BORDER = "lagged.matrix", "lagged.slope", "lagged.border."
 _PATIENCE = 20
 #: Share of them after which an old factor that leads nowhere is given up.
 _TRIAL = 0.5
-#: See `Wear`: the cost of a correction alone depends on how many points change.
+#: See `FactorRenewal`: the cost of a correction alone depends on how many points change.
 _LAST, _MARGIN = 10, 1.25
 
 
@@ -40,9 +40,9 @@ class LaggedFactor:
     changes at once is in it, and what it lacks is the change of the bodies since. Where volume is
     kept apart it is the mixed form that is preconditioned, see `MixedForm`.
 
-    A factor is made anew where it is worn, see `Wear`, and where old ones lead nowhere, see
-    `Trust`. All unknowns are factorised for a correction alone where a new factor in double
-    precision does not lead to it either, and in the place of new factors that cost more.
+    `FactorRenewal` says when a new factor pays. All unknowns are factorised for a correction alone
+    where a new factor in double precision does not lead to it either, and in the place of new
+    factors that cost more, see `KrylovBackoff`.
 
     Args:
         problem: The problem, on one process.
@@ -62,7 +62,7 @@ class LaggedFactor:
         self._of_factor = scipy.sparse.csr_array((0, 0))
         self._slope = scipy.sparse.csr_array((0, 0))
         self._single, self._due = True, True
-        self._wear, self._trust = Wear(_LAST, _MARGIN), Trust()
+        self._renewal, self._backoff = FactorRenewal(_LAST, _MARGIN), KrylovBackoff()
         #: Costs in solutions: of this correction so far, and of the last one with a new factor.
         self._spent = self._with_new = 0.0
         self._interiors, self._whole = 0, WholeLU()
@@ -80,9 +80,9 @@ class LaggedFactor:
             return {}
         return {
             "lagged.unknowns": touched.unknowns,
-            "lagged.spent": self._wear.persistent(),
+            "lagged.spent": self._renewal.persistent(),
             "lagged.flags": np.array([self._single, self._due]),
-            "lagged.trust": self._trust.persistent(),
+            "lagged.trust": self._backoff.persistent(),
             "lagged.with_new": np.array(self._with_new),
             **{f"{_MATRIX}.{part}": getattr(self._of_factor, part) for part in PARTS},
             **{f"{_SLOPE}.{part}": getattr(self._slope, part) for part in PARTS},
@@ -97,8 +97,8 @@ class LaggedFactor:
         columns = self._problem.bulk.stiffness.getSize()[1]
         self._slope = scipy.sparse.csr_array(slope, (len(slope[-1]) - 1, columns))
         self._single, self._due = map(bool, kept["lagged.flags"])
-        self._wear.restore(kept["lagged.spent"])
-        self._trust.restore(kept["lagged.trust"])
+        self._renewal.restore(kept["lagged.spent"])
+        self._backoff.restore(kept["lagged.trust"])
         self._with_new = float(kept["lagged.with_new"])
         self._factor = self._made(unknowns)
         begin = len(_BORDER)
@@ -120,7 +120,7 @@ class LaggedFactor:
         """
         self.krylov.append(0)
         self._spent = 0.0
-        untried = self._trust.skips()
+        untried = self._backoff.skips()
         if untried and self._with_new > self._whole_cost:
             self._due = True
             return self._whole.solve(tangent, b)
@@ -128,7 +128,7 @@ class LaggedFactor:
             self._whole.close()
         found = self._with_kept(tangent, b, rtol, untried)
         if not untried:
-            self._trust.add(self._spent, self._whole_cost)
+            self._backoff.add(self._spent, self._whole_cost)
         return self._whole.solve(tangent, b) if found is None else found
 
     def _with_kept(self, tangent: Mat, b: Floats, rtol: float, anew: bool) -> Floats | None:
@@ -214,11 +214,11 @@ class LaggedFactor:
             return
         self._spent += cost
         if fresh:
-            self._wear.begin(factor.solutions_per_factor)
+            self._renewal.begin(factor.solutions_per_factor)
             self._spent += factor.solutions_per_factor
             self._with_new = factor.solutions_per_factor + cost
-        self._wear.add(cost, left)
-        self._due = self._wear.worn
+        self._renewal.add(cost, left)
+        self._due = self._renewal.due
 
     def _renewed(self, tangent: Mat) -> bool:
         """Make a factor of this tangent; the old one stays where there is none."""

@@ -19,8 +19,8 @@ from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.pressures import OF_BOTH, CellPressures
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.iterative.levels import Levels
+from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
 from anisocontact.solver.strategies.once import once
-from anisocontact.solver.strategies.trust import Trust
 from anisocontact.solver.strategies.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 
@@ -177,7 +177,7 @@ class MixedKrylov:
     ) -> None:
         self._count, self._comm, self._note = problem.solved_for, problem.comm, once(note)
         self._form = DisplacementPressureForm(problem, volume)
-        self._levels, self._trust = levels, Trust()
+        self._levels, self._backoff = levels, KrylovBackoff()
         self._right, self._found = self._form.new_vector(), self._form.new_vector()
         size = self._right.getSizes()
         matrix = PETSc.Mat().createPython((size, size), self._form, problem.comm)
@@ -194,9 +194,9 @@ class MixedKrylov:
         tangent, _ = ksp.getOperators()
         failed = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
         reason = int(failed)
-        if not (self._trust.skips() and self._room()):
+        if not (self._backoff.skips() and self._room()):
             reason = self._iterate(ksp, tangent, b, x)
-            self._trust.add(float(reason == failed), 0.5)
+            self._backoff.add(float(reason == failed), 0.5)
         if reason == failed and self._room():
             reason = self._factorise(tangent, b, x)
         ksp.setConvergedReason(reason)

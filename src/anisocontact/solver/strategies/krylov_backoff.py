@@ -11,7 +11,7 @@ from anisocontact.base.array_types import Ints
 _DEAR, _MOST = 2, 16
 
 
-class Trust:
+class KrylovBackoff:
     """Tells by what corrections have cost whether iterations are tried for the next one.
 
     With an old factor they are lost where bodies change much between corrections, or where a
@@ -20,10 +20,10 @@ class Trust:
     then four, and so on; one that costs less ends that.
 
     Example:
-        >>> trust = Trust()
-        >>> trust.add(30.0, 20.0)
-        >>> trust.add(25.0, 20.0)
-        >>> trust.skips(), trust.skips(), trust.skips()
+        >>> backoff = KrylovBackoff()
+        >>> backoff.add(30.0, 20.0)
+        >>> backoff.add(25.0, 20.0)
+        >>> backoff.skips(), backoff.skips(), backoff.skips()
         (True, True, False)
     """
 

@@ -10,14 +10,15 @@ from anisocontact.base.array_types import Floats
 _HELPED = 0.5
 
 
-class Wear:
+class FactorRenewal:
     """What corrections have cost since a factor was made, in solutions with it.
 
-    A factor is worn where a decimal of the residual costs more now than on average since it was
-    made, with the factor counted in: no other moment to make the next one costs less in the long
-    run, as long as the cost grows with the age of the factor. It does not where all has changed at
-    once after it was made: it is also worn where corrections have cost more than with one that is
-    new by its own cost. Where the next one has then not helped, it may lose twice as much.
+    A new factor is due where a decimal of the residual costs more now than on average since the
+    last one was made, with that factor counted in: no other moment to make the next one costs less
+    in the long run, as long as the cost grows with the age of the factor. It does not where all has
+    changed at once after the factor was made: a new one is also due where corrections have cost
+    more than with a new one, by what one costs to make. Where the next one has then not helped, it
+    may lose twice as much.
 
     Args:
         last: Corrections whose cost is the cost of now.
@@ -28,11 +29,11 @@ class Wear:
         spent: Cost of the factor and decimals that it gained, none, then those of each correction.
 
     Example:
-        >>> wear = Wear(1, 1.0)
-        >>> wear.begin(10.0)
+        >>> renewal = FactorRenewal(1, 1.0)
+        >>> renewal.begin(10.0)
         >>> for used in (2, 4, 8, 16):
-        ...     wear.add(used, 1e-4)
-        ...     print(wear.worn)
+        ...     renewal.add(used, 1e-4)
+        ...     print(renewal.due)
         False
         False
         False
@@ -74,7 +75,7 @@ class Wear:
         self._ahead = 0.0
 
     @property
-    def worn(self) -> bool:
+    def due(self) -> bool:
         """Whether a new factor pays."""
         total, last = np.sum(self.spent, axis=0), np.sum(self.spent[-self._last :], axis=0)
         dearer = last[0] * total[1] > self._margin * last[1] * total[0]
