@@ -107,6 +107,23 @@ def test_same_pair_twice(tmp_path, capsys):
     assert "error: contact[1]: same pair as contact[0]" in capsys.readouterr().err
 
 
+def test_one_surface_under_two_names(tmp_path, capsys):
+    """Two tables that say the same plane are one master: forces would be shared, or act twice."""
+    start, end = CASE.index("[[contact]]"), CASE.index("[[step]]")
+    on_plate = CASE[start:end].replace('slave = "block.bottom"\nmaster = "base.top"',
+                                       'slave = "base.bottom"\nmaster = "plate"')  # fmt: skip
+    again = on_plate.replace('"plate"', '"same"')
+    same = '[surface.same]\nshape = "plane"\npoint = [3, 1, -1]\nnormal = [0, 0, 2]\n'
+    (tmp_path / "case.toml").write_text(CASE[:end] + on_plate + again + same + CASE[end:])
+    assert main(["run", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        "error: contact: contact 'base.bottom on same' is given twice: 9 of its facets meet the "
+        "same master in contact 'base.bottom on plate'"
+    )
+    assert not (tmp_path / "out").exists()
+
+
 def test_what_is_built(tmp_path, capsys):
     """Points and slave nodes, the area of now at finite strain, the softer penalty."""
     contact = _built(tmp_path, CASE).problem.contacts[0]

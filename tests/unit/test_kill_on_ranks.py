@@ -86,7 +86,7 @@ def test_a_kill_within_a_checkpoint(tmp_path: Path, case_text: str) -> None:
         assert run(case, 2 + number % 2, moment, 2) != 0
         stored = load_checkpoint(tmp_path / "out")
         assert stored is not None
-        assert all(np.load(path)["node/position"].size for path in stored.pieces)
+        assert all(np.load(path)["nodal/position"].size for path in stored.pieces)
         assert len(stored.pieces) == 2 + number % 2
         done.append(stored.facts["writer"]["summary"]["steps"])
     assert done == [0, 0, 0, 1]

@@ -14,9 +14,11 @@ import basix.ufl
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.contact import Contact
+from anisocontact.contact.given_twice import shared
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import ContactProblem
 from anisocontact.surfaces import make_surface
 
@@ -204,30 +206,47 @@ def test_a_contact_that_is_given_twice_is_one_line(given):
     u, v = fem.Function(given.space), ufl.TestFunction(given.space)
     form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
     model, low = Model.of(given.space, {"pad.sole": given.bottom}), _interface(-0.1)
-    one, again, other = (Contact(model, "pad.sole", plate) for plate in (low, low, _interface()))
+    plates = low, _interface(-0.1), _interface()
+    one, again, other = (Contact(model, "pad.sole", plate) for plate in plates)
     ContactProblem(form, u, contacts=[one, other])
-    with pytest.raises(InputError, match="is given twice"):
-        ContactProblem(form, u, contacts=[one, again])
-    with pytest.raises(InputError, match=r"^contacts: contact 'pad\.sole' is given twice$"):
-        ContactProblem(form, u, contacts=[one, other, again])
+    said = (
+        r"^contacts: contact 'pad\.sole' is given twice: 4 of its facets meet the same master in "
+        r"contact 'pad\.sole'$"
+    )
+    for contacts in ([one, again], [one, other, again]):
+        with pytest.raises(InputError, match=said):
+            ContactProblem(form, u, contacts=contacts)
 
 
-def test_contacts_are_the_same_by_their_slave_and_their_master():
-    """Not by their laws: another slave on one surface, and another master, are other contacts."""
-    upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+def test_contacts_are_the_same_by_their_facets_and_their_master():
+    """Not by their laws: other slave facets on one surface, and another master, are others."""
+    upper = BoxSpec((0, 0, 0), (1, 1, 1), (2, 1, 1))
     lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
     model, plate = build_box({"block": upper, "base": lower}), _interface(-1.0)
+    model = _with_half(model)
     friction = Friction(coefficients=0.3)
     laws = [ContactLaw(plate.normal, Adhesion(stiffness=k), friction) for k in (1, 2)]
-    on_plate = Contact(model, "base.bottom", plate)
-    assert not on_plate.same_pair(Contact(model, "block.bottom", plate))
-    pairs = [
-        Contact(model, "block.bottom", f"{body}.top", law)
-        for body, law in zip(["base"] * 2, laws, strict=True)
-    ]
-    assert pairs[0].same_pair(pairs[1])
-    assert not pairs[0].same_pair(Contact(model, "base.top", "block.bottom", laws[0]))
-    assert not pairs[0].same_pair(on_plate)
+    on_plate = Contact(model, "block.bottom", plate)
+    assert shared(on_plate, Contact(model, "base.bottom", plate)) == 0
+    assert shared(on_plate, Contact(model, "block.half", plate)) == 1
+    ball = make_surface("sphere", centre=(0.5, 0.5, -9), radius=8)
+    others = [make_surface("plane", point=(3, 1, -1), normal=(0, 0, 2)), _interface(-1.1).surface]
+    met = [Contact(model, "block.bottom", one, laws[0]) for one in (*others, ball)]
+    assert [shared(on_plate, one) for one in met] == [2, 0, 0]
+    carried = MovingSurface(plate, RigidBody("plate", (0, 0, 0)))
+    assert shared(on_plate, Contact(model, "block.bottom", carried)) == 0
+    pairs = [Contact(model, "block.bottom", "base.top", law) for law in laws]
+    assert shared(*pairs) == 2
+    assert shared(pairs[0], Contact(model, "base.top", "block.bottom", laws[0])) == 0
+    assert shared(pairs[0], on_plate) == 0
+
+
+def _with_half(model: Model) -> Model:
+    """With one of the facets of the bottom as a group of its own."""
+    facets = {name: model.facets(name) for name in model.facet_names()}
+    bodies = {name: model.cells(name) for name in model.body_names()}
+    facets["block.half"] = model.facets("block.bottom")[:1]
+    return Model(model.mesh, bodies, facets)
 
 
 def _pressed(box, *, moved: str = ""):

@@ -43,7 +43,7 @@ def read(folder: Path, name: str) -> Arrays:
 def difference(one: Arrays, other: Arrays) -> dict[str, float]:
     """Largest difference of every array over its largest value."""
     out: dict[str, float] = {}
-    places = [np.column_stack([a["node/position"], a["node/body"]]) for a in (one, other)]
+    places = [np.column_stack([a["nodal/position"], a["node/body"]]) for a in (one, other)]
     rows = _matched(*places)
     for name, values in one.items():
         if name.startswith("nodal/"):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.base.difference import first_difference
 from anisocontact.base.errors import InputError
 from anisocontact.case.named_files import check_files
 from anisocontact.results.files import MARKS
@@ -65,13 +66,10 @@ def check_same(before: Mapping[str, Any], now: Mapping[str, Any], begun: int) ->
     Raises:
         InputError: Names the first entry that is not the same.
     """
-    different = _difference(_of_state(before, begun), _of_state(now, begun), "")
-    if different is not None:
-        place, old, new = different
+    if found := first_difference(_of_state(before, begun), _of_state(now, begun)):
         raise InputError(
-            f"{_shown(new)} given, the run that is to go on had {_shown(old)}: run without "
-            "--restart",
-            field=place,
+            f"{found.new} given, the run that is to go on had {found.old}: run without --restart",
+            field=found.place,
         )
 
 
@@ -79,35 +77,6 @@ def _of_state(tables: Mapping[str, Any], begun: int) -> dict[str, Any]:
     """What must stay the same."""
     kept = {key: value for key, value in tables.items() if key not in FREE_TO_CHANGE}
     return kept | {"step": tables["step"][:begun]}
-
-
-_MISSING = object()
-
-
-def _difference(old: Any, new: Any, place: str) -> tuple[str, Any, Any] | None:
-    """Path of the first entry that differs, and both values."""
-    if isinstance(old, Mapping) and isinstance(new, Mapping):
-        pairs = [
-            (f"{place}.{key}" if place else key, old.get(key, _MISSING), new.get(key, _MISSING))
-            for key in dict.fromkeys([*old, *new])
-        ]
-    elif _is_list(old) and _is_list(new) and len(old) == len(new):
-        pairs = [(f"{place}[{i}]", a, b) for i, (a, b) in enumerate(zip(old, new, strict=True))]
-    else:
-        return None if old == new else (place, old, new)
-    found = (_difference(a, b, where) for where, a, b in pairs)
-    return next((one for one in found if one is not None), None)
-
-
-def _is_list(value: Any) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str)
-
-
-def _shown(value: Any) -> str:
-    if value is _MISSING:
-        return "nothing"
-    text = repr(value)
-    return text if len(text) < 60 else f"{text[:57]}..."
 
 
 def _rows(table: Path) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -23,11 +23,12 @@ from anisocontact.contact.making import (
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sagitta import sagitta
-from anisocontact.interface import STATUS, ContactLaw, Response
+from anisocontact.interface import STATUS, ContactLaw, Interface, Response
 from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.description import compared
 from anisocontact.mesh import Model
 from anisocontact.mesh.at_rest import check_at_rest
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 
 
 @typed
@@ -154,10 +155,27 @@ class Contact(Pass):
         """
         check_at_rest(self._made_of[0], f"contact {self.name!r}")
 
-    def same_pair(self, other: Contact) -> bool:
-        """Whether another contact has the same slave and the same master."""
-        masters = self._made_of[1], other._made_of[1]
-        return self.groups == other.groups and (len(self.groups) > 1 or masters[0] is masters[1])
+    def made_of(self) -> dict[str, Any]:
+        """What it was made of, for another one to be compared with, see `compared`."""
+        _, master, law, options = self._made_of
+        told: dict[str, Any] = compared(
+            {"slave": self.slave, "master": master, "law": law, **vars(options)}
+        )
+        if self.body is not None:
+            told["body"] = {"name": self.body.name, "reference": self.body.reference.tolist()}
+        return told
+
+    @property
+    def model(self) -> Model:
+        """Mesh with the facet groups."""
+        found: Model = self._made_of[0]
+        return found
+
+    def surface(self) -> Any:
+        """The analytic surface that is met, where it was drawn."""
+        master: Any = self._made_of[1]
+        surface: Any = master.surface if isinstance(master, MovingSurface) else master
+        return surface.surface if isinstance(surface, Interface) else surface
 
     def go_on_beyond(self, seams: Sequence[Seam]) -> None:
         """Meet what goes on beyond the cut faces of a sector, before the first step.

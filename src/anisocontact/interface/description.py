@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -71,6 +72,51 @@ def made(text: Any) -> Any:
     if text["is"] not in makers:
         raise InputError(f"{text['is']!r} given, allowed: {', '.join(makers)}", "is")
     return makers[text["is"]](**parts)
+
+
+def compared(part: Any) -> Any:
+    """A law, a surface, or what else a problem is made of, as what it is compared by.
+
+    Args:
+        part: It. Of an object of a class that is not named here its class and those of its
+            attributes that are data; where a class stands does not matter.
+
+    Returns:
+        As of `described`, of what cannot be written the name of its type.
+
+    Example:
+        >>> compared(Friction(coefficients=0.3)) == compared(Friction(coefficients=[0.3, 0.3]))
+        True
+        >>> compared({"a law": lambda x: x})
+        {'a law': {'is': 'function', 'name': '<lambda>'}}
+    """
+    if part is None or isinstance(part, str | int | float):
+        return part
+    if isinstance(part, Mapping):
+        return {str(name): compared(one) for name, one in part.items()}
+    if isinstance(part, Sequence | np.ndarray):
+        return [compared(one) for one in part]
+    if isinstance(part, np.generic):
+        return part.item()
+    kind = next((kind for kind in _KINDS if kind.fits(part)), _PLAIN)
+    return {"is": kind.word or type(part).__qualname__} | compared(kind.parts(part))
+
+
+def _data(part: Any) -> dict[str, Any]:
+    """Attributes that say what an object is; of a function its name."""
+    name = getattr(part, "__qualname__", None)
+    own = {n: one for n, one in getattr(part, "__dict__", {}).items() if _is_data(one)}
+    return {"name": name} if isinstance(name, str) else own
+
+
+def _is_data(value: Any) -> bool:
+    """Whether an attribute says what an object is: no other object that may name it in turn."""
+    if isinstance(value, Mapping):
+        return all(_is_data(one) for one in value.values())
+    if isinstance(value, list | tuple):
+        return all(_is_data(one) for one in value)
+    plain = value is None or isinstance(value, str | int | float | np.ndarray | np.generic)
+    return plain or is_dataclass(value) or any(kind.fits(value) for kind in _KINDS)
 
 
 class _Kind(NamedTuple):
@@ -209,4 +255,5 @@ _KINDS = (
     ),
     _Kind("tuple", lambda part: isinstance(part, tuple), lambda part: {"of": list(part)}, _tuple),
 )
+_PLAIN = _Kind("", lambda part: True, _data, object)
 _OBJECT = _Kind("object", lambda part: True, _attributes, _object)

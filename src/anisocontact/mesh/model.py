@@ -329,9 +329,21 @@ class Model:
         Raises:
             InputError: No such group.
         """
+        return int(self.mesh.comm.allreduce(len(self.owned_facets(name))))
+
+    def owned_facets(self, name: str) -> Locals:
+        """Local facets of a group that this rank owns, (facets,).
+
+        Args:
+            name: "body.group".
+
+        Raises:
+            InputError: No such group.
+        """
         index_map = self.mesh.topology.index_map(self.mesh.topology.dim - 1)
-        owned = int(np.sum(self.facets(name) < index_map.size_local))
-        return int(self.mesh.comm.allreduce(owned))
+        facets = self.facets(name)
+        owned: Locals = facets[facets < index_map.size_local]
+        return owned
 
 
 def _located(mesh: Any, dim: int, groups: Mapping[str, Ints]) -> dict[str, Locals]:

@@ -32,7 +32,7 @@ NAME = "checkpoint.npz"
 #: Folder of the pieces of several processes.
 PIECES = "checkpoint"
 #: Changes with the meaning of the file.
-FORMAT = 20
+FORMAT = 21
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
 
@@ -89,7 +89,7 @@ def own_arrays(model: Model, kept: Persistent) -> tuple[Arrays, Arrays]:
     common |= {f"strategy/{name}": values for name, values in kept.strategy.items()}
     counts = np.array([model.space.dofmap.index_map.size_global, len(kept.points)])
     common |= {"mesh/counts": counts, "mesh/extent": high - low}
-    return _named(kept, (position, body)), common
+    return _named(kept, body), common
 
 
 def keep_checkpoint(
@@ -218,7 +218,7 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
     ]
 
     def look(part: Mapping[str, Any]) -> bool:
-        nodal.look("node/position", part, part["node/body"])
+        nodal.look("nodal/position", part, part["node/body"])
         for rows in points:
             rows.look(f"{rows.prefix}reference", part)
         return not any(len(rows.missing) for rows in (nodal, *points))
@@ -309,9 +309,9 @@ class _Rows:
             raise InputError(f"the mesh is not that of the run that is to go on: nothing at ({at})")
 
 
-def _named(kept: Persistent, where: tuple[Floats, Ints]) -> Arrays:
+def _named(kept: Persistent, body: Ints) -> Arrays:
     """Arrays of this rank under the names they have in the file."""
-    named: Arrays = {"node/position": where[0], "node/body": where[1]}
+    named: Arrays = {"node/body": body}
     named |= {f"nodal/{name}": values for name, values in kept.nodal.items()}
     for i, part in enumerate(kept.points):
         # records have gaps in memory, which a file cannot have

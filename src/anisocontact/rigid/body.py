@@ -151,6 +151,16 @@ class RigidBody:
         self.accepted = Pose(now.translation, now.turn, orthonormal(now.rotation), np.eye(3))
         self.trial = self.accepted
 
+    def go_on(self, values: Floats, rotation: Floats) -> None:
+        """Be where an accepted state has the body.
+
+        Args:
+            values: Translation, length, and turn, radian, (6,).
+            rotation: Orientation, (3, 3).
+        """
+        self.accepted = Pose(values[:3].copy(), values[3:].copy(), rotation.copy(), np.eye(3))
+        self.trial = self.accepted
+
     def farthest(self, points: Floats) -> float:
         """Farthest that the last motion can have carried one of the points, (n, 3), length."""
         shift = self.trial.translation - self.accepted.translation

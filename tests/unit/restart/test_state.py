@@ -33,7 +33,7 @@ def test_another_order_of_nodes_finds_its_own(case, whole):
     )
     assert all(np.array_equal(found.nodal[n], v) for n, v in wanted.nodal.items())
     assert all(np.array_equal(found.points[0][n], v) for n, v in wanted.points[0].items())
-    shuffled["node/position"] = shuffled["node/position"] + 1e-3
+    shuffled["nodal/position"] = shuffled["nodal/position"] + 1e-3
     with pytest.raises(InputError, match="the mesh is not that of the run that is to go on"):
         checkpoint.distribute(checkpoint.Stored(shuffled, stored.facts), built.problem.model, like)
 

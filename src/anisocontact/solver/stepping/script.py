@@ -16,11 +16,13 @@ from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
+from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
+from anisocontact.solver.stepping.script_state import ScriptState
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton import Newton
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -36,7 +38,6 @@ from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
 from anisocontact.solver.terms.free_modes import connected_body
-from anisocontact.solver.terms.persistent import under
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.unconstrained_modes import MeshPart, parts, unconstrained_modes
 
@@ -131,6 +132,7 @@ class ContactProblem(AssembledSystem):
         bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
         options = {**self._fields.options, **(petsc_options or {})}
+        self._state = ScriptState(u, unknowns, contacts, self._bodies, self._assembly.terms)
         self._options = Database(petsc_options_prefix, petsc_options or {}, "petsc_options")
         with self._options.blamed(), self._options:
             self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
@@ -248,31 +250,26 @@ class ContactProblem(AssembledSystem):
         Raises:
             InputError: It cannot be written.
         """
-        arrays = {"u": self.u.x.array}
-        for i, history in enumerate(self._assembly.terms.histories()):
-            arrays |= {f"{i}/{name}": values for name, values in history.items()}
-        write_arrays(own_file(path, self.comm), arrays)
+        write_arrays(own_file(path, self.comm), self._state.arrays())
 
     @typed
     def restore(self, path: str | Path) -> None:
         """Go on from what `save` has written, with the same mesh, contacts and processes.
 
+        Rigid bodies of contacts are moved to where they were.
+
         Args:
             path: The file.
 
         Raises:
-            InputError: It cannot be read, or is that of another problem.
+            InputError: It cannot be read, or is that of another problem: names what differs.
         """
         file = own_file(path, self.comm)
         kept = read_arrays(file)
-        now = self._assembly.terms.histories()
-        histories = [under(f"{i}/", kept) for i in range(len(now))]
-        shapes = [{name: v.shape for name, v in h.items()} for h in (*now, {"u": self.u.x.array})]
-        given = [*histories, {"u": kept.get("u", np.zeros(0))}]
-        if shapes != [{name: v.shape for name, v in h.items()} for h in given]:
-            raise InputError(f"'{file}' is that of another problem, or of other processes", "path")
-        self.u.x.array[:] = kept["u"]
-        self._assembly.terms.take_histories(iter(histories), self.nodal)
+        try:
+            self._state.take(kept)
+        except InputError as error:
+            raise InputError(f"'{file}': {error}", "path") from None
 
     def close(self) -> None:
         """Give back the objects of PETSc."""
@@ -374,9 +371,8 @@ class ContactProblem(AssembledSystem):
 
 def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
     """Where the displacement is among the unknowns of a script."""
-    for i, contact in enumerate(contacts):
-        if any(contact.same_pair(one) for one in contacts[:i]):
-            raise InputError(f"contact {contact.name!r} is given twice", "contacts")
+    check_given_once(contacts, "contacts")
+    for contact in contacts:
         if not (contact.unknowns.among(space) and contact.unknowns.same(contacts[0].unknowns)):
             raise InputError(
                 f"contact {contact.name!r} is defined on another space than u", "contacts"

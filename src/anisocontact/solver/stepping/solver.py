@@ -32,6 +32,7 @@ from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
+from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.choice import choose
@@ -138,6 +139,7 @@ class Solver:
         self._cut_faces = CutFaceWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
+        self._made_of = described_run(problem, self.steps)
 
     def run(
         self,
@@ -177,6 +179,7 @@ class Solver:
     def persistent(self) -> Persistent:
         """State of the problem and of the run after the last accepted part, of this rank."""
         kept = self.problem.persistent()
+        kept.common["problem"] = as_array(self._made_of)
         kept.common["energy_watch"] = self._energy.persistent()
         place, pace = self.place, self.place.pace
         numbers = asdict(pace)
@@ -195,10 +198,18 @@ class Solver:
         return kept
 
     def restore(self, kept: Persistent) -> None:
-        """Go on from what `persistent` gave; `run` continues there."""
+        """Go on from what `persistent` gave; `run` continues there.
+
+        Args:
+            kept: The state, of a problem that was made of the same, with the same steps so far.
+
+        Raises:
+            InputError: It is that of another problem: names what differs.
+        """
         numbers = {name: v.item() for name, v in kept.common.items() if name.startswith("place.")}
         numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
+        check_run(kept, self._made_of, self.problem.persistent(), step + begun)
         self._turns.kink = numbers.pop("kink")
         self._turns.refused = numbers.pop("refused_angle"), numbers.pop("refused_size")
         before = None

@@ -12,6 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, bare, small_strain
 from anisocontact.contact import Contact
+from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.shared_nodes import mark_shared
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
@@ -184,3 +185,4 @@ def _check(
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"two contacts have the name {name!r}", "contact")
+    check_given_once(contacts, "contact")

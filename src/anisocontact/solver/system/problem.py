@@ -367,6 +367,7 @@ class Problem(ReportedSystem):
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
         nodal, common = self._memory.persistent()
+        nodal["position"] = self.model.positions[: self.layout.owned // 3].copy()
         nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, self.assembly.terms.histories(), common)

@@ -12,7 +12,6 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.rigid import RigidBody
-from anisocontact.rigid.body import Pose
 from anisocontact.solver.terms.drive import Drive
 from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
 from anisocontact.solver.terms.free_modes import SupportedFrame
@@ -302,9 +301,7 @@ class RigidBodies(Term):
             self._drives[body].last_load = load
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
-            body.accepted = body.trial = Pose(
-                values[:3].copy(), values[3:].copy(), rotation.copy(), np.eye(3)
-            )
+            body.go_on(values, rotation)
         self._accepted_outside = kept["rigid.outside"].copy()
         self._accepted_load = kept["rigid.load"].copy()
         self._accepted_of_faces = kept["rigid.faces"].copy()
