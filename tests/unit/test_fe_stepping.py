@@ -16,6 +16,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
+from anisocontact.solver.stepping.acceptance import INVERTED
 from anisocontact.solver.stepping.attempts import _reason
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.pace import Pace
@@ -177,6 +178,17 @@ def test_a_cell_turned_inside_out_is_no_solution(fe):
     assert stopped.value.culprits[0].position[:2] == pytest.approx((0.5, 0.5))
     top = model.space.tabulate_dof_coordinates()[:, 2] == 1.0
     assert -1.0 < problem.u.x.array.reshape(-1, 3)[top, 2].min() < -0.9
+
+
+def test_corrections_that_invert_cells_are_no_equilibrium() -> None:
+    """Requirement: what ended the attempt is told beside cells that a correction turned over.
+
+    Such an iterate says nothing of how distorted the cells are; a state in equilibrium does.
+    """
+    found = [Culprit("inverted", (0.0, 0.0, 0.0), "the cell here is inverted")]
+    told = _reason("the residual is not a number", found, [])
+    assert told == "the residual is not a number; cells are turned inside out by corrections"
+    assert _reason(INVERTED, found, []) == "cells are turned inside out"
 
 
 def _touching(points: int) -> Any:

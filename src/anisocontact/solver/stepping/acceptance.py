@@ -21,6 +21,10 @@ from anisocontact.solver.system.rotations import CURE, WARNED
 STRAYED = 1e-3
 
 
+#: Why states with such cells are refused.
+INVERTED = "cells are turned inside out"
+
+
 @dataclass(frozen=True)
 class Refusal:
     """Why a state in equilibrium is not accepted.
@@ -46,7 +50,7 @@ Collective: it is asked on every rank and says the same on each.
 def cells_inside_out(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states with inverted cells."""
     found = inverted_cells(problem)
-    return Refusal("cells are turned inside out", tuple(found)) if found else None
+    return Refusal(INVERTED, tuple(found)) if found else None
 
 
 def energy_not_a_number(problem: Problem, _: Vec) -> Refusal | None:

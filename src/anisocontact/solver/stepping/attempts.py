@@ -9,7 +9,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.contact.schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.solver.stepping.acceptance import refused
+from anisocontact.solver.stepping.acceptance import INVERTED, refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.culprits import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
@@ -311,7 +311,8 @@ def _reason(reason: str, culprits: list[Culprit], contacts: Sequence[Contact]) -
     if kind == "law":
         return culprits[0].why
     if kind == "inverted":
-        return "cells are turned inside out"
+        # an equilibrium that is none, or a correction too far, which tells nothing of the cells
+        return reason if reason == INVERTED else f"{reason}; {INVERTED} by corrections"
     if kind == "flipping":
         told = f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
         border = [culprit.contact for culprit in culprits if culprit.border]
