@@ -93,8 +93,8 @@ def test_laws_that_count_wrongly_are_told(
     problem, steps = dragged(pair, exact, mortar, 1)
     taken_up, energies = Pass.taken_up, Pass.energies
 
-    def wrong(self: Pass, mean_pressure: bool = False) -> float:
-        return times * taken_up(self, mean_pressure)
+    def wrong(self: Pass) -> float:
+        return times * taken_up(self)
 
     def booked(self: Pass) -> dict[str, float]:
         known = energies(self)

@@ -19,7 +19,7 @@ from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.trials import Trials
 from anisocontact.contact.whereabouts import Whereabouts
-from anisocontact.interface import FAILURE, Response
+from anisocontact.interface import FAILURE, Response, State
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
@@ -268,8 +268,7 @@ class Pass:
         if self._trial is not None:
             self._gained = self._trial.response.traction - self.last.traction
             self.accepted = self._trial
-            if self._way:
-                self.last.state["dissipation"] = dissipated(self.state, self._way, self.last.state)
+            self.last.state["dissipation"] = self._rubbed(self.last.state)
             for i, name in enumerate(_DISSIPATED.values()):
                 self._dissipated[:, i] += self.areas * (self.last.state[name] - self.state[name])
             self.state = self.last.state
@@ -308,27 +307,24 @@ class Pass:
         """Remember the trial as a state that bodies which flow have gone through."""
         self._way.append(Slid.of(self.current.response.state))
 
-    def taken_up(self, mean_pressure: bool = False) -> float:
+    def taken_up(self) -> float:
         """What the laws store and dissipate from the accepted state to the trial, of this rank.
 
-        Args:
-            mean_pressure: Whether friction has the mean of the pressures of both ends, which a way
-                in equilibrium has; that of the end otherwise, with which it is counted.
-
         Returns:
-            Energy; what friction dissipates is along the way that bodies which flow have gone.
+            Energy; what friction dissipates is along the way, see `dissipated`.
         """
         now, before = self.current, self.accepted
         state, areas = now.response.state, now.areas
-        friction = dissipated(self.state, self._way, state) if self._way else state["dissipation"]
-        gained = friction - self.state["dissipation"]
-        if mean_pressure:
-            end = np.where(state["pressure"] > 0.0, state["pressure"], np.inf)
-            gained *= 0.5 * (1.0 + self.state["pressure"] / end)
+        gained = self._rubbed(state) - self.state["dissipation"]
         gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
         stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
         held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]
         return float(areas @ gained + sum(held))
+
+    def _rubbed(self, end: State) -> Floats:
+        """What friction has dissipated from the start to a state that ends an increment, (n,)."""
+        coulomb = not self.trials.interface.tangential.in_python
+        return dissipated(self.state, self._way, end, coulomb)
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""

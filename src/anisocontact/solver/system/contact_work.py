@@ -198,7 +198,7 @@ class ContactWork:
             return 0.0
         before, end = self._passed[0], self._passing(nodal)
         mean, most = self._mean_of_rigid()
-        local = float(sum(contact.taken_up(mean_pressure=True) for contact in self._contacts))
+        local = float(sum(contact.taken_up() for contact in self._contacts))
         local -= before.mean_work(end) + mean
         sums = np.array([local, before.most_missed(end) + most])
         missed, most = self._comm.allreduce(sums).tolist()

@@ -89,8 +89,7 @@ class ReportedSystem(AssembledSystem):
             "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
             the "flow" to the next equilibrium has dissipated and, where there are any, energy of
             "springs" and elastic supports, what materials have dissipated, "inelastic", and
-            "residual", what is left of "external" less all others: first order in the size of the
-            increments.
+            "residual", what is left of "external" less all others: the error of the increments.
         """
         stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
         stored |= self.assembly.bodies.dissipated()
