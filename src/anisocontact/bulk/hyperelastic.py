@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
+from anisocontact.bulk.user_function import check_function
 from anisocontact.bulk.volume import Volume, derivative_at, volume_of, volume_ratio
 
 _MODULI = (
@@ -216,6 +217,10 @@ class UserEnergy(Hyperelastic):
     Args:
         energy: Takes the UFL deformation gradient, returns the energy per reference volume.
         young: Young's modulus at rest, the scale of the default penalty, stress.
+        name: What the energy is called in messages.
+
+    Raises:
+        InputError: The energy fails, is no number or does not depend on its argument.
 
     Example:
         >>> rubber = UserEnergy(lambda F: 0.5 * ufl.inner(F, F) - ufl.ln(ufl.det(F)), young=2.0)
@@ -223,7 +228,8 @@ class UserEnergy(Hyperelastic):
         False
     """
 
-    def __init__(self, energy: Callable[[Any], Any], young: float) -> None:
+    def __init__(self, energy: Callable[[Any], Any], young: float, *, name: str = "energy") -> None:
+        check_function(energy, name, ())
         self._energy = energy
         self.young = _scale(young)
 
@@ -238,6 +244,10 @@ class UserStress:
     Args:
         piola: Takes the UFL deformation gradient, returns the first Piola-Kirchhoff stress.
         young: Young's modulus at rest, the scale of the default penalty, stress.
+        name: What the stress is called in messages.
+
+    Raises:
+        InputError: The stress fails, is no tensor or does not depend on its argument.
 
     Example:
         >>> spring = UserStress(lambda F: 2.0 * (F - ufl.Identity(3)), young=2.0)
@@ -247,7 +257,8 @@ class UserStress:
 
     linear = False
 
-    def __init__(self, piola: Callable[[Any], Any], young: float) -> None:
+    def __init__(self, piola: Callable[[Any], Any], young: float, *, name: str = "piola") -> None:
+        check_function(piola, name, (3, 3))
         self._piola = piola
         self.young = _scale(young)
 

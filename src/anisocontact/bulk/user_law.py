@@ -11,7 +11,6 @@ import numpy as np
 
 from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import ufl
 from anisocontact.base.python_file import where_failed
 from anisocontact.bulk.hyperelastic import UserEnergy, UserStress
 from anisocontact.bulk.materials import Material
@@ -146,23 +145,10 @@ def user_material(given: Any) -> Material:
     if callable(getattr(given, "update", None)):
         law: PointLaw = UserLaw(given)
         return cast(Material, law)
-    kinds: dict[str, tuple[Any, tuple[int, ...]]] = {
-        "energy": (UserEnergy, ()),
-        "piola": (UserStress, (3, 3)),
-    }
-    for method, (kind, shape) in kinds.items():
+    kinds: dict[str, Any] = {"energy": UserEnergy, "piola": UserStress}
+    for method, kind in kinds.items():
         function = getattr(given, method, None)
         if callable(function):
-            _try(function, f"{name}.{method}", shape)
-            return cast(Material, kind(function, float(cast(float, young))))
+            made = kind(function, float(cast(float, young)), name=f"{name}.{method}")
+            return cast(Material, made)
     raise InputError(f"{name} has no method energy(F), piola(F) or update(state)")
-
-
-def _try(function: Any, name: str, shape: tuple[int, ...]) -> None:
-    """Let a function of the deformation gradient show what it returns."""
-    try:
-        found = ufl.as_ufl(function(ufl.variable(ufl.Identity(3)))).ufl_shape
-    except (Exception, SystemExit) as error:
-        raise InputError(f"{name} failed: {where_failed(error)}") from error
-    if found != shape:
-        raise InputError(f"{name} returned something of shape {found}, {shape} needed")

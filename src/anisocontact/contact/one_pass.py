@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
@@ -87,6 +88,8 @@ class Pass:
         self.unknowns, self.space = unknowns, unknowns.nodes
         self.slave, self.name = slave, name
         self.slave_points, self.master = points, master
+        nodes = self.space.dofmap.index_map
+        self._count = nodes.size_local + nodes.num_ghosts
         self._comm, self._area_given = unknowns.comm, area_given
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
@@ -201,10 +204,12 @@ class Pass:
             The response; the committed history is unchanged.
 
         Raises:
-            InputError: The time increment is not positive, or a law in Python failed.
+            InputError: The time increment is not positive, the displacements are not those of the
+                local nodes, or a law in Python failed.
         """
         if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
+        u = points_of(u, 3, "u", rows=self._count)
         if self.master.place(u, self.state, self.trials.start, self.last.state):
             self.trials.forget()
         self._dt = dt

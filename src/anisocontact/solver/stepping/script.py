@@ -150,9 +150,10 @@ class ContactProblem(AssembledSystem):
         Raises:
             RuntimeError: No convergence, or a body is behind its master; `u` and the history are as
                 before.
-            InputError: The time increment is not positive, nodes of the mesh were moved since
-                contacts were made, or nothing holds a part of the mesh: no stiffness of the form,
-                no condition and no contact that touches.
+            InputError: The time increment is not positive, `u` or a condition has a value that is
+                not finite, nodes of the mesh were moved since contacts were made, or nothing holds
+                a part of the mesh: no stiffness of the form, no condition and no contact that
+                touches.
         """
         if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
@@ -166,6 +167,7 @@ class ContactProblem(AssembledSystem):
         """Newton iterations to the equilibrium, which is accepted."""
         for contact in self.contacts:
             contact.check_at_rest()
+        self._check_finite()
         terms = self._assembly.terms
         terms.set_load_factor(1.0, dt)
         before = self.u.x.array.copy()
@@ -330,6 +332,18 @@ class ContactProblem(AssembledSystem):
         self.evaluate(x)
         self._assembly.terms.roll_back()
         return self.balance
+
+    def _check_finite(self) -> None:
+        """Refuse a start, or a condition, with values that are no numbers; collective."""
+        x, space = self.new_vector(), self.u.function_space
+        given = {"u": self.u.x.array}
+        for i, bc in enumerate(self.bcs):
+            given[f"bcs[{i}]"] = Dirichlet([bc], space).violation(x)
+        x.destroy()
+        for name, values in given.items():
+            count = self.comm.allreduce(int((~np.isfinite(values)).sum()))
+            if count:
+                raise InputError(f"{count} values that are not finite given", name)
 
     def _check_supported(self, x: Vec) -> None:
         """Refuse a part of the mesh that can move as a rigid body."""
