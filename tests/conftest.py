@@ -234,7 +234,7 @@ class FiniteElements:
 def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of the command draw nothing: pictures take longer than a small run."""
     none = nullcontext(lambda folder: [])
-    monkeypatch.setattr("anisocontact.results.beside.report_beside", lambda wanted: none)
+    monkeypatch.setattr("anisocontact.results.report_process.report_beside", lambda wanted: none)
 
 
 @pytest.fixture(scope="session")

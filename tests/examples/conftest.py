@@ -19,7 +19,7 @@ def solved() -> Callable[[Path, Path], Any]:
     def solve(case: Path, folder: Path) -> Results:
         with pytest.MonkeyPatch.context() as patch:
             none = nullcontext(lambda folder: [])
-            patch.setattr("anisocontact.results.beside.report_beside", lambda wanted: none)
+            patch.setattr("anisocontact.results.report_process.report_beside", lambda wanted: none)
             assert main(["run", str(case), "-o", str(folder)]) == 0
         return Results(folder)
 

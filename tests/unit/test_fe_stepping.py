@@ -20,8 +20,8 @@ from anisocontact.solver.stepping.acceptance import INVERTED
 from anisocontact.solver.stepping.attempts import _reason
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import TurnWatch
-from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.system.culprit import Culprit
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}

@@ -22,9 +22,9 @@ SCRIPT = """
 import os, signal, sys
 from anisocontact.cli import main
 from contextlib import nullcontext
-from anisocontact.results import beside, checkpoint, keeping
+from anisocontact.results import checkpoint, checkpoint_times, report_process
 when, name, where, left = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1), [int(sys.argv.pop(1))]
-beside.report_beside = lambda wanted: nullcontext(lambda folder: [])
+report_process.report_beside = lambda wanted: nullcontext(lambda folder: [])
 real = getattr(checkpoint, name)
 
 def dying(*arguments):
@@ -42,7 +42,7 @@ def clock():
     return now[0]
 
 now = [0.0]
-keeping.monotonic = clock
+checkpoint_times.monotonic = clock
 setattr(checkpoint, name, dying)
 sys.exit(main(sys.argv[1:]))
 """

@@ -24,10 +24,10 @@ where, what = sys.argv.pop(1), sys.argv.pop(1)
 
 def prepared():
     from contextlib import nullcontext
-    from anisocontact.results import beside
+    from anisocontact.results import report_process
     from anisocontact.solver.system.problem import Problem
 
-    beside.report_beside = lambda wanted: nullcontext(lambda folder: [])
+    report_process.report_beside = lambda wanted: nullcontext(lambda folder: [])
     evaluate, count = Problem.evaluate, [0]
 
     def failing(self, x):

@@ -25,11 +25,11 @@ from anisocontact.base.figure_style import new_figure, save
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
-from anisocontact.results.beside import report_beside
 from anisocontact.results.deformed import SHOWN, magnification
 from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.run_data import RunData
 from anisocontact.results.report.shared_work import attempts
+from anisocontact.results.report_process import report_beside
 from anisocontact.results.solids import Solid
 from anisocontact.results.writer import Writer
 
@@ -311,7 +311,7 @@ def test_a_report_is_drawn_beside_the_run(run, tmp_path):
 def test_what_draws_is_imported_without_descriptions():
     """Matplotlib's texts on what can be set take a third of its import; `set` does without them."""
     code = (
-        "from anisocontact.results import waiting; waiting._main(); "
+        "from anisocontact.results import report_worker; report_worker._main(); "
         "from matplotlib.artist import Artist; from matplotlib.lines import Line2D; "
         "from matplotlib.patches import Patch; line = Line2D([], []); line.set(lw=3.0); "
         "print(line.get_linewidth(), [one.set is Artist.set for one in (Line2D, Patch)])"

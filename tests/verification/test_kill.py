@@ -74,8 +74,8 @@ MAIN = """
 import sys
 from contextlib import nullcontext
 from anisocontact.cli import main
-from anisocontact.results import beside
-beside.report_beside = lambda wanted: nullcontext(lambda folder: [])
+from anisocontact.results import report_process
+report_process.report_beside = lambda wanted: nullcontext(lambda folder: [])
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -13,9 +13,9 @@ from anisocontact.base.machine import lack
 from anisocontact.base.signals import interrupt, on_signals
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
-from anisocontact.results.beside import Reporter, report_here
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
+from anisocontact.results.report_process import Reporter, report_here
 from anisocontact.results.writer import Writer
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 

@@ -12,15 +12,15 @@ from anisocontact.case import load
 from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import Output, say
-from anisocontact.results import beside
+from anisocontact.results import report_process
 from anisocontact.results.files import check_folder
 from anisocontact.results.lock import locked
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
     from anisocontact.case.run import Outcome
-    from anisocontact.results.beside import Reporter
     from anisocontact.results.checkpoint import Stored
+    from anisocontact.results.report_process import Reporter
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -41,7 +41,7 @@ def command(arguments: argparse.Namespace) -> int:
         else:  # once more: another run may just have ended
             check_folder(folder, arguments.overwrite)
         drawn = file.case.output.pictures and MPI.COMM_WORLD.rank == 0
-        with beside.report_beside(drawn) as reporter:
+        with report_process.report_beside(drawn) as reporter:
             return _run(arguments, file, folder, checkpoint, reporter)
 
 

@@ -14,7 +14,7 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import Couplings, Surfaced
-from anisocontact.contact.whereabouts import Seen, Whereabouts
+from anisocontact.contact.side_of_master import Seen, SideOfMaster
 from anisocontact.interface import Interface, SlaveSurface, State
 from anisocontact.interface.failed_point import OnSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -240,14 +240,16 @@ class AnalyticMaster(Master):
         return Seen(hit.status == _INTERIOR, hit.gap, hit.dgap_dx)
 
     @override
-    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+    def side_of_master(
+        self, u: Floats, before: Snapshot, state: State, now: Snapshot
+    ) -> SideOfMaster:
         moved = self._slave.quadrature.moved(self._slave.everywhere(u))
         outward = self._slave.outward_of(moved)
         places, last = now.points, before.points
         if self.body is not None:
             last, places = self.body.to_body(last, accepted=True), self.body.to_body(places)
         everywhere = np.ones(len(places), dtype=bool)
-        return Whereabouts(
+        return SideOfMaster(
             before=last,
             now=places,
             outward=self.into_frame(outward),

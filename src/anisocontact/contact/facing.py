@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners, outward_normals
-from anisocontact.contact.near import Near
+from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
@@ -45,7 +45,7 @@ class Facing(Protocol):
         """Distance within which the master is searched, length."""
 
     @property
-    def near(self) -> Near | None:
+    def near(self) -> NearFacets | None:
         """Facets of the master near to each of the slave; None where it can meet all."""
 
     @property
@@ -127,7 +127,7 @@ def near_facets(
     master: FacetMesh,
     x: Floats,
     apart: float,
-) -> Near:
+) -> NearFacets:
     """What is near facets in the reference configuration.
 
     Args:
@@ -157,7 +157,9 @@ def near_facets(
     walls = (ahead <= 0.0) & (opposed > 0.0)
     unmet, unseen = ~meets | walls, ~meets | (ahead <= 0.0) | (opposed <= 0.0)
     faced = ~unseen & (opposed > OPPOSED)
-    return Near(*(FacetSets.of_pairs(f[one], g[one], count) for one in (unmet, unseen, faced)))
+    return NearFacets(
+        *(FacetSets.of_pairs(f[one], g[one], count) for one in (unmet, unseen, faced))
+    )
 
 
 def _looks(

@@ -12,7 +12,7 @@ from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.contact.whereabouts import Seen, Whereabouts
+from anisocontact.contact.side_of_master import Seen, SideOfMaster
 from anisocontact.interface import Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import RigidBody
@@ -229,7 +229,9 @@ class Master(Protocol):
     def look(self, x: Floats) -> Seen:
         """The master where it is now from points of space, (n, 3), length."""
 
-    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+    def side_of_master(
+        self, u: Floats, before: Snapshot, state: State, now: Snapshot
+    ) -> SideOfMaster:
         """Where points are beside the master, in its frame; collective.
 
         Args:

@@ -10,8 +10,8 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
 from anisocontact.contact.point_tangent import Nodes
+from anisocontact.contact.side_of_master import Seen, SideOfMaster, carried
 from anisocontact.contact.sides import Sides
-from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.interface import ContactLaw, State
 from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
@@ -117,12 +117,14 @@ class MeshedMaster(Master):
         return self.sides.look(x)
 
     @override
-    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+    def side_of_master(
+        self, u: Floats, before: Snapshot, state: State, now: Snapshot
+    ) -> SideOfMaster:
         sides = self.sides
         there = sides.reference + self._gathered.everywhere(self._gathered.moved(u))
         then = self._gathered.everywhere(self._accepted[0])
         nodes = np.unique(sides.master.nodes)
-        return Whereabouts(
+        return SideOfMaster(
             before=carried(before.points, then[nodes], there[nodes]),
             now=now.points,
             outward=sides.points.outward_of(sides.points.at(there)),

@@ -32,10 +32,10 @@ from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.points import unmoved
 from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.tangent_places import met_along
-from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
@@ -299,8 +299,10 @@ class MortarMaster(MeshedMaster):
         return named(points.nodes[:, 0]), named(weights.masters), shares
 
     @override
-    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
-        found, hit = super().whereabouts(u, before, state, now), self._hint
+    def side_of_master(
+        self, u: Floats, before: Snapshot, state: State, now: Snapshot
+    ) -> SideOfMaster:
+        found, hit = super().side_of_master(u, before, state, now), self._hint
         if self._fold is not None:
             return found
         # facets that face the same way do not overlap: a body that has turned over is not touched

@@ -18,8 +18,8 @@ from anisocontact.contact.history import Slid, Snapshot, dissipated
 from anisocontact.contact.initial import check_start
 from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.trials import Trials
-from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import FAILURE, Response, State
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
@@ -349,13 +349,13 @@ class Pass:
         values = self._comm.allreduce(local).tolist()
         return dict(zip((*_STORED, *_DISSIPATED), values, strict=True))
 
-    def whereabouts(self, u: Floats) -> Whereabouts:
+    def side_of_master(self, u: Floats) -> SideOfMaster:
         """Where the points of the trial are beside the master, in its frame; collective.
 
         Args:
             u: Displacement of the local nodes in the trial, (nodes, 3), length.
         """
-        return self.master.whereabouts(u, self.accepted, self.state, self.current)
+        return self.master.side_of_master(u, self.accepted, self.state, self.current)
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
         """All that the next increments and the output depend on, an entry for each point.

@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.near import Near
+from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 from anisocontact.surfaces import FacetSets
 
@@ -109,7 +109,7 @@ class SlavePoints:
         """Facets from which a master is searched, of the slave's own on this rank."""
         return slave
 
-    def unseen(self, near: Near) -> FacetSets:
+    def unseen(self, near: NearFacets) -> FacetSets:
         """Facets that each point does not look at, from what is near to those that are searched."""
         return near.unseen.take(self.facet)
 

@@ -26,12 +26,12 @@ from anisocontact.contact.facing import largest_radius, near_facets
 from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
-from anisocontact.contact.near import Near
+from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.side_of_master import Seen
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.surface_gradient import SurfaceGradient
 from anisocontact.contact.sweep import Sweep
-from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
 from anisocontact.mesh import Model
 from anisocontact.surfaces import (
@@ -70,8 +70,8 @@ class Sides:
     gathered: MasterSurface
     surface: FacetSurface
     reach: float
-    apart: Near | None
-    near: Near | None
+    apart: NearFacets | None
+    near: NearFacets | None
     kinds: Codes
     at: Floats
     threads: int

@@ -22,7 +22,7 @@ from anisocontact.contact.facet_mesh import (
     outward_normals,
 )
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.near import Near
+from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
@@ -326,7 +326,7 @@ class SlaveNodes(SlavePoints):
         return self._whole
 
     @override
-    def unseen(self, near: Near) -> FacetSets:
+    def unseen(self, near: NearFacets) -> FacetSets:
         around = self.around
         return near.unseen_from(around.offsets, around.facets, around.counts > 0.0)
 

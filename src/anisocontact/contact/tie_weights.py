@@ -26,7 +26,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facing import facing, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
-from anisocontact.contact.near import Near
+from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
@@ -76,7 +76,7 @@ class _Sides:
     surface: FacetSurface
     reach: float
     reference: Floats
-    near: Near | None = None
+    near: NearFacets | None = None
     threads: int = 1
 
 

@@ -17,16 +17,16 @@ from anisocontact import __version__
 from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.results.beside import Reporter, report_here
+from anisocontact.results.checkpoint_times import Checkpoints
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
-from anisocontact.results.keeping import Checkpoints
 from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
+from anisocontact.results.report_process import Reporter, report_here
 from anisocontact.results.resultants import Resultant
 from anisocontact.results.snapshot import Observer, exact_laws, laws
 from anisocontact.results.surfaces import Surfaces

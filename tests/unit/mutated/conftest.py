@@ -387,5 +387,6 @@ def mutated(tmp_path_factory: pytest.TempPathFactory, capsys: Any) -> Mutated:
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pictures take longer than the run."""
     monkeypatch.setattr(
-        "anisocontact.results.beside.report_beside", lambda wanted: nullcontext(lambda folder: [])
+        "anisocontact.results.report_process.report_beside",
+        lambda wanted: nullcontext(lambda folder: []),
     )

@@ -14,7 +14,8 @@ from anisocontact.cli import main
 def no_report(monkeypatch):
     """The pictures take longer than the run."""
     monkeypatch.setattr(
-        "anisocontact.results.beside.report_beside", lambda wanted: nullcontext(lambda folder: [])
+        "anisocontact.results.report_process.report_beside",
+        lambda wanted: nullcontext(lambda folder: []),
     )
 
 

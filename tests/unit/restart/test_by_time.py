@@ -16,7 +16,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
-from anisocontact.results import checkpoint, keeping
+from anisocontact.results import checkpoint, checkpoint_times
 from anisocontact.results.files import Disk, WriteError
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 
@@ -32,7 +32,7 @@ class Killed(BaseException):
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The clock of the checkpoints, which stands still."""
     now = [0.0]
-    monkeypatch.setattr(keeping, "monotonic", lambda: now[0])
+    monkeypatch.setattr(checkpoint_times, "monotonic", lambda: now[0])
     return now
 
 
@@ -40,13 +40,13 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 def written(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Accepted increments of which a checkpoint has been written, 0 for the state before them."""
     numbers: list[int] = []
-    write = keeping.keep_checkpoint
+    write = checkpoint_times.keep_checkpoint
 
     def kept(*arguments: Any) -> None:
         write(*arguments)
         numbers.append(arguments[2] - 1)
 
-    monkeypatch.setattr(keeping, "keep_checkpoint", kept)
+    monkeypatch.setattr(checkpoint_times, "keep_checkpoint", kept)
     return numbers
 
 
@@ -68,16 +68,16 @@ def test_which_increments_have_one(
 
     An increment takes some seconds by the clock, and so does writing.
     """
-    write = keeping.keep_checkpoint
+    write = checkpoint_times.keep_checkpoint
 
     def slow(*arguments: Any) -> None:
         clock[0] += writing
         write(*arguments)
 
-    monkeypatch.setattr(keeping, "keep_checkpoint", slow)
+    monkeypatch.setattr(checkpoint_times, "keep_checkpoint", slow)
     built = build(load(case))
     disk, kept = Disk(built.problem.comm), built.solver.persistent()
-    checkpoints = keeping.Checkpoints(case.parent, built.problem.model, every)
+    checkpoints = checkpoint_times.Checkpoints(case.parent, built.problem.model, every)
     for number in range(7):
         checkpoints.take(disk, number + 1, kept, {})
         clock[0] += seconds
@@ -178,7 +178,7 @@ def test_what_waits_does_not_go_on_with_the_run(case, clock):
     """
     built = build(load(case))
     kept = built.solver.persistent()
-    checkpoints = keeping.Checkpoints(case.parent, built.problem.model, 1.0)
+    checkpoints = checkpoint_times.Checkpoints(case.parent, built.problem.model, 1.0)
     disk = Disk(built.problem.comm)
     for number in (1, 2):
         checkpoints.take(disk, number, kept, {"number": number})

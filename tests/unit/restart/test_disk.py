@@ -93,8 +93,8 @@ def test_files_that_may_not_grow(case, whole, same):
     code = (
         "import resource, signal, sys; from anisocontact.cli import main; "
         "import anisocontact.base.fenicsx  # MPI needs larger files\n"
-        "from contextlib import nullcontext; from anisocontact.results import beside; "
-        "beside.report_beside = lambda wanted: nullcontext(lambda folder: []); "
+        "from contextlib import nullcontext; from anisocontact.results import report_process; "
+        "report_process.report_beside = lambda wanted: nullcontext(lambda folder: []); "
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
         "resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0})); "
         f"sys.exit(main(['run', {str(case)!r}, '-o', {str(out)!r}]))"

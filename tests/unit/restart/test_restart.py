@@ -213,8 +213,9 @@ def test_another_number_of_processes(case, whole, before, after):
     out = case.parent / "out"
     code = (
         "import os, signal, sys; from anisocontact.cli import main; "
-        "from contextlib import nullcontext; from anisocontact.results import beside, writer; "
-        "beside.report_beside = lambda wanted: nullcontext(lambda folder: []); "
+        "from contextlib import nullcontext; "
+        "from anisocontact.results import report_process, writer; "
+        "report_process.report_beside = lambda wanted: nullcontext(lambda folder: []); "
         "keep = writer.Writer.keep; stop = int(sys.argv.pop(1))\n"
         "def kept(self, *a):\n"
         "    keep(self, *a)\n"

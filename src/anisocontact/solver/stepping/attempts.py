@@ -15,8 +15,8 @@ from anisocontact.solver.stepping.culprits import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
 from anisocontact.solver.stepping.overload import Overload
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import TurnWatch
-from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.culprit import Culprit

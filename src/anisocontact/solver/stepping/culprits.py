@@ -12,7 +12,7 @@ from anisocontact.contact import facet_size
 from anisocontact.contact.held_feet import facet_of
 from anisocontact.interface import FAILURE, STATUS
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 

@@ -18,8 +18,8 @@ from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.stepping.driven import Driven, deformable, driven
-from anisocontact.solver.stepping.further_on import Slide
 from anisocontact.solver.stepping.limit_load import Limit, PressedPoints, limit
+from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
 from anisocontact.solver.system.problem import Problem
 
 #: Sum of the normal forces over the sum of their sizes from which on a contact is flat.
@@ -52,7 +52,7 @@ class Overload:
         told: Whether there is evidence enough to say so.
         certain: Whether nothing that presses the body otherwise by then can make it hold: a contact
             that is open yet, or prescribed motion.
-        further: Whether it is not told as the body rests further on, see `further_on`.
+        further: Whether it is not told as the body rests further on, see `SlidingMotion`.
     """
 
     text: str
@@ -166,7 +166,7 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     text = f"{_line(body, then, found, when)}{least}: {cure}{slips}"
     told, grown = near or certain, float(then.force.sum() / points.force.sum())
     contacts = [contact for contact, _ in body.contacts]
-    slide = Slide(found.motion, body.centre, body.size, body.loads, contacts, grown)
+    slide = SlidingMotion(found.motion, body.centre, body.size, body.loads, contacts, grown)
     further = told and slide.rests(1.0 - found.held)
     return Overload(text, told and not further, certain and not further, further)
 

@@ -33,8 +33,8 @@ from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run
+from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
-from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.choice import choose
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.strategy import IncrementSolver, Task

@@ -29,7 +29,7 @@ from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
-from anisocontact.solver.terms.middles import constrain_middles, middle_nodes
+from anisocontact.solver.terms.midside_nodes import constrain_middles, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.sector_contacts import go_on_beyond_cuts
 from anisocontact.solver.terms.stabilisation import Stabilisation

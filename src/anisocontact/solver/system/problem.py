@@ -23,10 +23,10 @@ from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
-from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.reported import ReportedSystem
+from anisocontact.solver.system.restart_state import BEGUN, RestartState
 from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
 from anisocontact.solver.system.tangent import Tangent
@@ -118,7 +118,7 @@ class Problem(ReportedSystem):
         self._contact_work = ContactWork(parts)
         self.whole = Whole(self, parts, self._bodies, self._accepted)
         self.reduction: Reduction = self.whole
-        self._memory = Memory(assembly.terms, self._accepted, self._bodies)
+        self._restart_state = RestartState(assembly.terms, self._accepted, self._bodies)
 
     @property
     def u(self) -> Any:
@@ -198,7 +198,7 @@ class Problem(ReportedSystem):
         """
         check_at_rest(self.model, "model")
         start = self.u.x.array.copy()
-        self._memory.begin()
+        self._restart_state.begin()
         begin_step(self._parts, step, start, self._accepted.reaction, again)
         self._tangent.begin(step)
 
@@ -366,7 +366,7 @@ class Problem(ReportedSystem):
 
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
-        nodal, common = self._memory.persistent()
+        nodal, common = self._restart_state.persistent()
         nodal["position"] = self.model.positions[: self.layout.owned // 3].copy()
         nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
@@ -387,10 +387,10 @@ class Problem(ReportedSystem):
             self.begin(step, again=True)
             if i in stopped:
                 self.end_at(stopped[i])
-        self._memory.restore(kept, BEGUN)
+        self._restart_state.restore(kept, BEGUN)
         for step in steps[-1:]:
             self.begin(step, again=True)
-        self._memory.restore(kept)
+        self._restart_state.restore(kept)
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
         self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)

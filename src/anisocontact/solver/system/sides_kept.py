@@ -13,7 +13,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import Contact
-from anisocontact.contact.whereabouts import CRUSHED
+from anisocontact.contact.side_of_master import CRUSHED
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.terms.free_modes import ConnectedBody
 
@@ -135,7 +135,7 @@ class SidesKept:
 
     def _objections(self, watched: _Watched, u: Floats, whole: bool) -> Iterator[Culprit]:
         """All of them, as every rank has to ask all."""
-        where = watched.one.whereabouts(u)
+        where = watched.one.side_of_master(u)
         comm = where.comm
         name = watched.one.slave.partition(".")[0]
         behind, depth, place = self._behind(watched, u, whole)

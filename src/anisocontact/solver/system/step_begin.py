@@ -8,7 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
-from anisocontact.bulk.doubts import doubtful_materials
+from anisocontact.bulk.material_warnings import doubtful_materials
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.mesh.pieces import unjoined_bodies
 from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported

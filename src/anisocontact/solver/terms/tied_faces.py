@@ -23,7 +23,7 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
 from anisocontact.solver.terms.free_modes import SupportedFrame
-from anisocontact.solver.terms.middles import shares_of_corners
+from anisocontact.solver.terms.midside_nodes import shares_of_corners
 
 if TYPE_CHECKING:
     from anisocontact.contact.tie_weights import TieConditions

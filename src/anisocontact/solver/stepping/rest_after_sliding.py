@@ -25,7 +25,7 @@ FAR = 10.0
 
 
 @dataclass(frozen=True)
-class Slide:
+class SlidingMotion:
     """A body that slides, with what drives it and what it slides on.
 
     Attributes:

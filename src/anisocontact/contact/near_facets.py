@@ -12,7 +12,7 @@ from anisocontact.surfaces.facets import FacetSets
 
 
 @dataclass(frozen=True)
-class Near:
+class NearFacets:
     """Facets near to each facet in the reference configuration, and its neighbours.
 
     Attributes:
@@ -26,9 +26,9 @@ class Near:
     unseen: FacetSets
     faced: FacetSets
 
-    def by(self, change: Callable[[FacetSets], FacetSets]) -> Near:
+    def by(self, change: Callable[[FacetSets], FacetSets]) -> NearFacets:
         """All changed alike."""
-        return Near(*(change(sets) for sets in vars(self).values()))
+        return NearFacets(*(change(sets) for sets in vars(self).values()))
 
     def unseen_from(self, offsets: Ints, facets: Locals, counts: Flags) -> FacetSets:
         """What nodes do not look at: what their facets do not.

@@ -9,7 +9,7 @@ from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, build_mesh, make_shape
-from anisocontact.solver.stepping.further_on import FAR, Slide
+from anisocontact.solver.stepping.rest_after_sliding import FAR, SlidingMotion
 from anisocontact.surfaces import make_surface
 
 RADIUS, WEIGHT, SIZE = 5.0, 10.0, 0.5
@@ -18,7 +18,7 @@ ALONG = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 ROUND = np.array([1.0, 0.0, 0.0, 0.0, -SIZE / RADIUS, 0.0])
 
 
-def _slide(name: str, motion: np.ndarray) -> Slide:
+def _sliding(name: str, motion: np.ndarray) -> SlidingMotion:
     """A plate pressed on a surface by its weight, which works in the origin of the turn."""
     plate = make_shape("box", origin=(-0.01, -0.5, 0), size=(0.02, 1, 0.1), cells=(1, 1, 1))
     model = build_mesh([Body("plate", plate)])
@@ -35,7 +35,7 @@ def _slide(name: str, motion: np.ndarray) -> Slide:
     contact.commit()
     loads = np.zeros((3, 4))
     loads[:, 3] = 3.0, 0.0, -WEIGHT
-    return Slide(motion, np.zeros(3), SIZE, loads, [contact], 1.0)
+    return SlidingMotion(motion, np.zeros(3), SIZE, loads, [contact], 1.0)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_what_holds_a_body_back_as_it_slides(
     the motion follows the bore or its tangent; a plane and a drum hold nothing back. Tolerance:
     1 %, as points are moved by 1/40 of the radius and lie beside the middle by 1/500 of it.
     """
-    slide = _slide(name, motion)
+    slide = _sliding(name, motion)
     way = FAR * SIZE / np.linalg.norm(motion)
     found = [slide.rests(share * abs(stiffness) * way + 1e-9) for share in (0.99, 1.01)]
     assert found == [stiffness > 0.0, False]
@@ -81,4 +81,4 @@ def test_a_dent_holds_nothing_back() -> None:
     assert contact.last.pressure.max() > 0.0
     loads = np.zeros((3, 4))
     loads[:, 3] = 3.0, 0.0, -WEIGHT
-    assert not Slide(ALONG, np.zeros(3), SIZE, loads, [contact], 1.0).rests(1e-9)
+    assert not SlidingMotion(ALONG, np.zeros(3), SIZE, loads, [contact], 1.0).rests(1e-9)

@@ -1,4 +1,4 @@
-"""Where slave points are beside their master: in front of it, or through it.
+"""On which side of their master slave points are: in front of it, or through it.
 
 A law knows the closest point and no way. A body that has turned over hangs below its master with
 the slave's facets pressed from behind; one that has been thrown through a thin master finds nothing
@@ -42,7 +42,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class Whereabouts:
+class SideOfMaster:
     """Slave points of one pass in the frame of the master.
 
     Attributes:
@@ -80,7 +80,7 @@ class Whereabouts:
         pressed, closed = self.comm.allreduce(shares)
         return wrong if pressed > CRUSHED * closed else np.zeros_like(wrong)
 
-    def with_behind(self, there: Flags, normal: Floats, areas: Floats) -> Whereabouts:
+    def with_behind(self, there: Flags, normal: Floats, areas: Floats) -> SideOfMaster:
         """With points as if pressed that lie behind the master and face the same way.
 
         Args:

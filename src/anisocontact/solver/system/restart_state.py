@@ -11,7 +11,7 @@ from anisocontact.solver.terms.term import Term
 BEGUN = "begun_"
 
 
-class Memory:
+class RestartState:
     """The accepted state now and as it was when the step began.
 
     What a step prescribes goes on from the state in which it began, so both are needed.

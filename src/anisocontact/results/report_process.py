@@ -16,7 +16,7 @@ from pathlib import Path
 
 #: Writes the report of a results folder; what could not be drawn and why, a line each.
 Reporter = Callable[[Path], list[str]]
-_PROGRAM = "anisocontact.results.waiting"
+_PROGRAM = "anisocontact.results.report_worker"
 
 
 def report_here(folder: Path) -> list[str]:
