@@ -13,6 +13,7 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.linearised import Linearised
 from anisocontact.contact.master import Answer, Master
+from anisocontact.contact.multiplier_schemes import MultiplierSchemes
 from anisocontact.contact.multipliers import (
     RATIO,
     AugmentedLaw,
@@ -22,7 +23,6 @@ from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
 from anisocontact.contact.supported_share import Supports
-from anisocontact.contact.ways import Ways
 from anisocontact.interface import State
 
 #: What a trial starts from, and what the next Newton step is linear about.
@@ -48,7 +48,7 @@ class Trials:
         interface: Laws, as the user gave them.
         start: State from which trials start.
         immovable: Points that supports hold along the normal, left to their penalty, (n,).
-        multipliers: Those of the laws, and the ways to them.
+        multipliers: Those of the laws, and the schemes that find them.
         shared: Nodes that other contacts with multipliers have too.
     """
 
@@ -59,7 +59,7 @@ class Trials:
         self.master, self.interface, self.start, self._comm = master, law, state, comm
         self._laws: AugmentedLaw = law
         self._stiff_laws: AugmentedLaw = law
-        self.multipliers = Ways(law, comm)
+        self.multipliers = MultiplierSchemes(law, comm)
         self._layer: Layer | None = None
         self.immovable = self._slight = np.zeros(len(state), dtype=bool)
         self._supports = Supports(len(state))
@@ -239,7 +239,7 @@ class Trials:
         """Find the multipliers in another way until the trial is kept or forgotten.
 
         Args:
-            name: One of the names in `schemes`; a contact that does not have it goes on as usual.
+            name: One of those of `multiplier_schemes`; a contact that lacks it goes on as usual.
         """
         if name in self.multipliers.names:
             self.multipliers.take(name)

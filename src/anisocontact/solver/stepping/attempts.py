@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
-from anisocontact.contact.schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
+from anisocontact.contact.multiplier_schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import INVERTED, refused
 from anisocontact.solver.stepping.continuation import Continuation

@@ -197,7 +197,7 @@ class Contacts(Term):
 
     @property
     def ways(self) -> frozenset[str]:
-        """Ways to the multipliers that a contact has, see `Ways.names`."""
+        """Schemes by which contacts find multipliers, see `MultiplierSchemes.names`."""
         return frozenset(way for one in self._trials for way in one.multipliers.names)
 
     def take_way(self, name: str) -> None:
