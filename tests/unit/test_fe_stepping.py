@@ -311,9 +311,8 @@ def test_chattering_is_named_and_damped(fe, monkeypatch):
 
 
 def _refuses(watch, size, degrees):
-    """Whether a part in which a point in contact turns by an angle is to be cut."""
-    trial = SimpleNamespace(state={"turn": np.radians([degrees])}, status=np.array([1]))
-    contact = SimpleNamespace(trial=trial, name="touch", extreme=np.max, meshed=True)
+    """Whether a part in which a contact turns by an angle is to be cut."""
+    contact = SimpleNamespace(turn=lambda: np.radians(degrees), name="touch", meshed=True)
     return watch.objection(SimpleNamespace(contacts=[contact], dt=size)) is not None
 
 

@@ -290,6 +290,16 @@ class Contact(Pass):
         total = self._comm.allreduce(self.accepted.wrench(np.asarray(about)))
         return total[:3], total[3:]
 
+    def turn(self) -> float:
+        """Angle by which normal, axes of adhesion or slave turn where friction acts, radian.
+
+        `(sum T phi^3 / sum T)^(1/3)` of the angles phi and the tangential forces T of the points of
+        the trial, over all ranks: what a step does not follow of the way of a point grows with the
+        cube of its angle, and the force there is what it changes.
+        """
+        total, moment = self._comm.allreduce(self.current.turned_forces)
+        return float(np.cbrt(moment / total)) if total > 0.0 else 0.0
+
     def extreme(self, values: Floats) -> float:
         """Largest of some numbers at points, over all ranks; 0 without points."""
         return float(max(self._comm.allgather(float(np.max(values, initial=0.0)))))

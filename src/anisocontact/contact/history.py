@@ -31,6 +31,15 @@ class Snapshot:
         """Force on the slave at each point, (n, 3)."""
         return self.areas[:, None] * self.response.traction
 
+    @property
+    def turned_forces(self) -> Floats:
+        """Sums of the tangential forces of this rank, and of these times turns cubed, (2,).
+
+        Force, and force times radian^3; points that are open have no force.
+        """
+        size = self.areas * np.linalg.norm(self.response.traction_t, axis=1)
+        return np.array([size.sum(), size @ self.response.state["turn"] ** 3])
+
     def wrench(self, about: Floats, traction: Floats | None = None) -> Floats:
         """Force and moment about a point on the slave over the points of this rank, (6,).
 

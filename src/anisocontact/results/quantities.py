@@ -337,6 +337,13 @@ _TABLE = {
                 "contact along the last part of an increment",
                 lambda c: c.contact.extreme(c.state["turn"]),
             ),
+            (
+                "turn",
+                "radian",
+                "the same where friction acts, by which parts of increments are cut: the cubic "
+                "mean over the points, weighted with their tangential forces",
+                lambda c: c.contact.turn(),
+            ),
             ("area", "length^2", "slave area that touches", lambda c: c.means[0]),
             (
                 "radius",

@@ -27,6 +27,12 @@ SOFT = 0.04
 ROUNDING = 1e-5
 #: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
 STABILISED = 0.05
+#: What the summary has the largest value over the run of, and the quantity that it is of.
+_WORST = {
+    "penetration": "max_penetration",
+    "elastic_slip": "max_elastic_slip",
+    "turn": "turn",
+}
 
 
 def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> list[str]:
@@ -64,9 +70,9 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
         found[come] = entry["approach"] - first
     else:
         found[come] = before[come]
-    for name in ("penetration", "elastic_slip", "turn"):
+    for name, of_now in _WORST.items():
         key, when = f"worst_{name}", f"worst_{name}_time"
-        now = entry[f"max_{name}"] if before else 0.0
+        now = entry[of_now] if before else 0.0
         grown = key not in before or now > before[key]
         found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
     return found

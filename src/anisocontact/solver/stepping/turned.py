@@ -1,7 +1,8 @@
 """How far points in contact turn along one part of an increment, and what that allows.
 
 A step follows the path of a point to second order in the angle by which normal, axes of adhesion or
-the slave turn along it, see `FOLLOWED`.
+the slave turn along it, see `FOLLOWED`. It is the tangential force of a contact that has to be
+right: points that turn further pass where they have a small share of it, see `Contact.turn`.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ _KINK, _ON_SURFACES, _SMALLER = 0.6, 0.75, 0.5
 
 @dataclass(frozen=True)
 class PathTurn:
-    """The largest angle at a point in contact.
+    """The largest angle by which a contact turns.
 
     Attributes:
-        angle: Of normal, axes or slave, radian.
+        angle: Of normal, axes or slave, see `Contact.turn`, radian.
         contact: Name of the contact.
         meshed: Whether its master is facets.
     """
@@ -69,8 +70,7 @@ def largest_turn(problem: Problem) -> PathTurn:
     """The largest turn of the trial, over all ranks; collective."""
     found = PathTurn(0.0, "")
     for contact in problem.contacts:
-        trial = contact.trial
-        angle = contact.extreme(trial.state["turn"][trial.status > 0])
+        angle = contact.turn()
         if angle > found.angle:
             found = PathTurn(angle, contact.name, contact.meshed)
     return found
