@@ -34,7 +34,8 @@ from anisocontact.interface import State
 
 #: Least part of an increment in contact that is divided by.
 LEAST_PART = 1e-9
-#: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends.
+#: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends; so
+#: does a way that is as many times shorter.
 OVERSHOOT = 4.0
 
 
@@ -124,11 +125,11 @@ class Semismooth(Multipliers):
         given, found = self.answers(step)
         ratio, closing = self._ratios(step), np.isfinite(step.closeness)
         part = step.closeness.clip(LEAST_PART, 1.0)
-        overshot = self._overshot(step)
-        weak = closing & ~overshot
+        astray = self._astray(step)
+        weak = closing & ~astray
         times = ratio.copy()
         times[weak, 1] = step.closeness[weak].clip(1.0, ratio[weak, 1])
-        times[overshot, 1] /= part[overshot]
+        times[astray, 1] /= part[astray]
         shifted = given + (1.0 - times[:, [0, 1, 1, 1]]) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
@@ -139,7 +140,7 @@ class Semismooth(Multipliers):
         state["stiffer"] = (1.0 + step.start["stiffer"]) * ratio / self.ratio - 1.0
         left = np.where(np.isfinite(step.rigidity), 1.0, 1.0 - 1.0 / ratio)
         left[weak, 1] = 1.0
-        left[overshot, 1] = 1.0 / part[overshot]
+        left[astray, 1] = 1.0 / part[astray]
         deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
         deep /= self.factors[0] * self._penalties[0]
         deep[step.immovable] = 0.0
@@ -155,12 +156,12 @@ class Semismooth(Multipliers):
             by_force = closing | np.isfinite(step.rigidity[:, 1])
             more = left[:, 1:] * np.where(by_force[:, None], held, more)
             compliant = 1.0 - step.kept[:, 1:]
-            compliant[overshot, 0] = 1.0 / ratio[overshot, 1]
+            compliant[astray, 0] = 1.0 / ratio[astray, 1]
             more += compliant * step.flexed(step.now.vector(trial["stored"])) / stiffness
             # the way of a gap, which friction is divided by, does not grow with what is no motion
             way = self.way(step.start, step.answer.gap)[weak] * part[weak]
             more[weak] -= (deep[weak] / way)[:, None] * held[weak]
-            state["gap"][overshot] = 0.0
+            state["gap"][astray] = 0.0
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[apart] = 0.0
         return state, slip
@@ -181,8 +182,8 @@ class Semismooth(Multipliers):
         else:
             closing = np.isfinite(step.closeness)
             ratio[closing, 1] = ratio[closing, 0]
-            overshot = self._overshot(step)
-            ratio[overshot, 1] = np.minimum(self._at_no_gap(step), ratio[:, 0])[overshot]
+            astray = self._astray(step)
+            ratio[astray, 1] = np.minimum(self._at_no_gap(step), ratio[:, 0])[astray]
             ratio[step.slight, 1] = 1.0
         return ratio
 
@@ -190,14 +191,16 @@ class Semismooth(Multipliers):
         """How many times as stiff N / g_n is as penalties where the gap has closed, (n,)."""
         return self.closeness(step.start, step.answer.pressure, np.zeros(len(step.start)))
 
-    def _overshot(self, step: ContactTrial) -> Flags:
-        """Points far beyond a gap that closes with a stiffness N / g_n beyond the penalties', (n,).
+    def _astray(self, step: ContactTrial) -> Flags:
+        """Points whose trial says nothing of where a gap that closes ends, (n,).
 
-        Corrections take it as what it is at no gap and as constant: a trial deep in the master has
-        a way many times the gap, and a derivative by N and the way that says nothing of the end.
+        Corrections take the stiffness N / g_n as what it is at no gap and as constant: a trial deep
+        in the master has a way many times the gap; one that a multiplier presses though it is as
+        far away as before, or farther, has none, and a slip would be divided by it.
         """
         near = self._at_no_gap(step)
-        return np.asarray(np.isfinite(near) & (near > np.maximum(1.0, OVERSHOOT * step.closeness)))
+        deep = near > np.maximum(1.0, OVERSHOOT * step.closeness)
+        return np.asarray(np.isfinite(near) & (deep | (step.closeness > OVERSHOOT * near)))
 
     def _resolved(self, step: ContactTrial) -> float:
         """What penalties are multiplied with so that corrections of displacements are felt.
