@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -153,3 +154,10 @@ def test_a_new_registry_entry_needs_no_change_of_the_case_file(case_text):
     # Left out: the registry's default, 0.5 rad, goes through degrees and back.
     lean = kind.model_validate(data).surface["plate"].parameters()["lean_deg"]
     assert math.radians(lean) == pytest.approx(0.5, rel=1e-15)
+
+
+def test_a_fault_of_our_own_is_no_lack_of_finite_elements(monkeypatch):
+    """A material whose file imports in a circle is told: `info` was without materials."""
+    monkeypatch.setitem(sys.modules, "anisocontact.bulk", None)
+    with pytest.raises(ImportError, match=r"import of anisocontact.bulk halted"):
+        Registries.current()
