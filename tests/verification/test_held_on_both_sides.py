@@ -9,9 +9,11 @@ from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import CoupledFace, Problem, Solver, Step
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.report import Accepted
+from anisocontact.surfaces import make_surface
 
 WALL = {"low.left": {"x": 0.0, "y": 0.0}, "up.left": {"x": 0.0, "y": 0.0}}
 
@@ -65,3 +67,48 @@ def test_a_corner_that_moving_nodes_meet_or_none_has_its_pressure(columns: int, 
     states, contact = _run("direct", columns, gap)
     assert contact.resultant()[0][1] > 0.0
     assert [one.undetermined for one in states] == [{}] * len(states)
+
+
+@pytest.mark.parametrize("free", ["", "x", "rz"])
+@pytest.mark.parametrize("material", ["linear-elastic", "neo-hookean"])
+def test_a_face_on_a_rigid_body_is_held_as_by_supports(material: str, free: str) -> None:
+    """A block is pressed into the corner of two planes by its upper face, whose edge is in one.
+
+    What prescribes the motion of the edge says nothing of its pressure, be it a support or the body
+    that the face follows; where a step lets that go, or turn, its balance does.
+
+    Requirement: the forces of supports, in as many iterations, and the same is told; of a free body
+    the pressure that holds it, and nothing is told. Tolerance: that of Newton's method.
+    """
+    model = build_mesh(
+        [Body("block", make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(3, 3)))],
+        idealisation=PlaneStrain(),
+    )
+    steel = {"block": make_material(material, E=1e3, nu=0.3)}
+    wall = make_surface("plane", point=[0, 0, 0], normal=[1, 0, 0])
+    down = {"block.bottom": {"y": 0.0}}
+    into = {"x": -0.01, "y": -0.01}
+
+    def run(step: Step, *coupled: CoupledFace) -> tuple[Accepted, Contact]:
+        contact = Contact(model, "block.left", wall, Friction(coefficients=0.2))
+        problem = Problem(model, steel, [contact], coupled=coupled)
+        (accepted,) = Solver(problem, [step]).run()
+        return accepted, contact
+
+    by_supports, _ = run(Step("press", 1, {**down, "block.top": into}))
+    body = RigidBody("head", (0.5, 2.0, 0.0), free=True)
+    motion = {"head": {**into, free: None} if free else into}
+    load = {"head": {"x": -5.0}} if free == "x" else {}
+    step = Step("press", 1, down, motion=motion, load=load)
+    by_body, contact = run(step, CoupledFace("block.top", body))
+    edge = int(np.argmax(contact.points[:, 1]))
+    assert not by_body.relaxed
+    if free:
+        assert by_body.undetermined == {}
+        assert contact.last.pressure[edge] > 0.0
+        assert contact.last.gap[edge] == pytest.approx(0.0, abs=1e-6)
+        return
+    assert by_body.undetermined == by_supports.undetermined == {contact.name: 1}
+    assert by_body.iterations == by_supports.iterations
+    (one,), (other,) = by_body.resultants.values(), by_supports.resultants.values()
+    np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-7)

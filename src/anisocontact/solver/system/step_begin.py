@@ -57,6 +57,7 @@ def _begin_contacts(parts: Parts, count: int) -> None:
     """Let contacts know which nodes are prescribed, and which are held along which directions."""
     fixed = np.zeros(count, dtype=bool)
     fixed[parts.supports.unknowns] = True
+    fixed[parts.rigid.prescribed_of_faces()] = True
     held = [*parts.supports.resting(), *parts.guides.resting()]
     there = np.zeros((count // 3, len(held)), dtype=bool)
     for i, (nodes, _) in enumerate(held):

@@ -117,6 +117,16 @@ class FaceOnBody:
         """Local numbers of the unknowns that follow."""
         return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.constrained])
 
+    def prescribed(self, components: Flags) -> Ints:
+        """Local numbers of the unknowns that are prescribed where these motions of the body are.
+
+        Args:
+            components: Components of its translation and turn that are prescribed, (6,).
+        """
+        turns = components[3:]
+        along = components[:3] & np.roll(turns, 1) & np.roll(turns, 2)
+        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.constrained & along])
+
     def displacements(self) -> Floats:
         """Where the trial of the body has the nodes, (n, 3), length."""
         pose = self.body.trial

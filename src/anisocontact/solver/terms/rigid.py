@@ -7,7 +7,7 @@ from typing import Any, override
 
 import numpy as np
 
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
@@ -230,6 +230,11 @@ class RigidBodies(Term):
         """Which of the unknowns are prescribed, (size,)."""
         own = [self._drives[body].prescribed for body in self.free]
         return np.concatenate([np.zeros(0, dtype=bool), *own])
+
+    def prescribed_of_faces(self) -> Ints:
+        """Local numbers of the unknowns of faces that this step prescribes."""
+        own = [face.prescribed(self._drives[face.body].prescribed) for face in self._faces()]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *own])
 
     def body_couplings(self, first: int) -> list[Couplings]:
         """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
