@@ -8,9 +8,6 @@ import numpy.typing as npt
 #: Numbers in the units of a case.
 Floats = npt.NDArray[np.float64]
 
-#: The same in single precision.
-Singles = npt.NDArray[np.float32]
-
 #: Local numbers of nodes, cells and facets, as DOLFINx has them.
 Locals = npt.NDArray[np.int32]
 
