@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Self
 
 
@@ -27,6 +28,24 @@ class Remade:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _remake, (type(self), *self._made)
+
+    def with_parts(self, instead: Mapping[int, Any]) -> Self:
+        """Made anew with other parts; as it is where it has none of them.
+
+        Args:
+            instead: New parts by the `id` of those in whose place they stand.
+        """
+        args, kwargs = self._made
+        parts = [_replaced(one, instead) for one in args]
+        named = {name: _replaced(one, instead) for name, one in kwargs.items()}
+        pairs = zip([*parts, *named.values()], [*args, *kwargs.values()], strict=True)
+        same = all(new is old for new, old in pairs)
+        return self if same else type(self)(*parts, **named)
+
+
+def _replaced(part: Any, instead: Mapping[int, Any]) -> Any:
+    found = instead.get(id(part), part)
+    return found.with_parts(instead) if isinstance(found, Remade) and found is part else found
 
 
 def _remake(kind: type[Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:

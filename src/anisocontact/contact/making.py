@@ -16,6 +16,7 @@ from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.beyond_cuts import BeyondCuts, Seam
 from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
+from anisocontact.contact.field_axes import off_axes
 from anisocontact.contact.images import Images
 from anisocontact.contact.master import Master
 from anisocontact.contact.penalty import facet_size
@@ -161,6 +162,8 @@ def _on_surface(
     else:
         flip = inward(model.space, facets, quadrature)
         points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
+    if model.idealisation.dim == 3:
+        interface = off_axes(interface, points.quadrature.reference, points.size, comm)
     check_symmetry(model.idealisation, interface, points, comm)
     found = AnalyticMaster(interface, body, points, comm)
     return points, found, interface
@@ -307,13 +310,17 @@ def _on_facets(
         nodes,
         beyond,
     )
+    if model.idealisation.dim == 3:
+        met = model.positions[model.facet_nodes(master)]
+        x = np.concatenate([(nodes or sides.points).quadrature.reference, met])
+        law = off_axes(law, x, facet_size(model, slave), model.mesh.comm)
     # the masters of two bodies, which contact with a surface does without
     if nodes is not None:
         from anisocontact.contact.mortar_master import MortarMaster
 
         size = facet_size(model, master)
-        met = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
-        return nodes, met, law
+        pair = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
+        return nodes, pair, law
     from anisocontact.contact.facet_master import FacetMaster
 
     found = FacetMaster(sides, law, group=master, size=facet_size(model, master))

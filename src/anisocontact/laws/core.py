@@ -77,7 +77,7 @@ def _side(given: str, field: str) -> str:
 
 
 @typed
-class Adhesion:
+class Adhesion(Remade):
     """Tangential law inside the yield ellipse.
 
     Args:

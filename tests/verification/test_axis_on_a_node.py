@@ -1,0 +1,83 @@
+"""Polar and spiral fields whose axis goes through a slave node: that of a disc with its centre."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.anisotropy import make_directions
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact
+from anisocontact.interface import AdhesionAndFriction, ContactLaw, Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.surfaces import make_surface
+
+MU = (0.2, 0.4)
+HELD = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+FIELDS = {"polar": {"angle": 0.0}, "spiral": {"pitch": 0.5}}
+
+
+def _dragged(cells, origin=(0.0, 0.0, 0.0), field="polar", meshed=False):
+    """Force and moment about the axis of a block that is pressed and dragged along x."""
+    o = np.array(origin)
+    boxes = {"block": BoxSpec(tuple(o - (0.5, 0.5, 0.0)), (1, 1, 0.5), (cells, cells, cells // 2))}
+    if meshed:
+        boxes["base"] = BoxSpec(tuple(o - (1.0, 1.0, 0.5)), (2, 2, 0.5), (cells, cells, 1))
+    model, axis = build_box(boxes), (tuple(o), (0, 0, 1))
+    directions = make_directions(field, axis=axis, **FIELDS[field])
+    plane = make_surface("plane", point=tuple(o), normal=(0, 0, 1))
+    friction = Friction(coefficients=MU, directions=directions)
+    contact = Contact(model, "block.bottom", "base.top" if meshed else plane, friction)
+    rubber = make_material("linear-elastic", E=10.0, nu=0.3)
+    top = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.02}}
+    drag = {"block.top": {"x": 0.03}}
+    steps = [Step("press", 1, top | (HELD if meshed else {})), Step("drag", 2, drag)]
+    for _ in Solver(Problem(model, dict.fromkeys(boxes, rubber), [contact]), steps).run():
+        pass
+    return np.concatenate(contact.resultant(origin))
+
+
+@pytest.mark.parametrize("meshed", [False, True])
+@pytest.mark.parametrize("field", FIELDS)
+def test_the_origin_does_not_matter(field, meshed):
+    """Requirement: it runs, and forces are those of the same block elsewhere.
+
+    Source: a shift of everything. Tolerance: of equilibrium, 1e-8; rounding that decided on the
+    direction of the node, or refused it, would be seen at 1e-2.
+    """
+    here = _dragged(2, (0.0, 0.0, 0.0), field, meshed)
+    there = _dragged(2, (3.0, -2.0, 7.0), field, meshed)
+    assert there == pytest.approx(here, abs=1e-8 * abs(here).max())
+    assert here[0] < -0.2 * here[2]
+
+
+@pytest.mark.parametrize("cells", [2, 4, 8])
+def test_the_node_counts_with_its_area(cells):
+    """Requirement: whatever direction the node has, its share of the force falls with its area.
+
+    Source: rings are the same on both sides of the plane of the drag, so that no force is across
+    but that of the node, h^2 of the area, at most half the difference of the coefficients times its
+    pressure, which is below 1.2 of the mean.
+    """
+    force = _dragged(cells)[:3]
+    assert abs(force[1]) <= 1.2 / cells**2 * 0.5 * (MU[1] - MU[0]) * force[2]
+
+
+def test_what_has_no_such_part_stays_as_it_is():
+    """Requirement: laws are made anew with another field only where they have it."""
+    fields = [make_directions("constant", vector=(1, 0, 0)) for _ in range(3)]
+    laws = (
+        Adhesion(stiffness=(2, 1), directions=fields[0]),
+        Friction(coefficients=MU, directions=fields[1], directions_on="slave"),
+    )
+    law = ContactLaw(NormalLaw(penalty=1.0), AdhesionAndFriction(*laws))
+    interface = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), law)
+    assert interface.with_parts({id(fields[2]): fields[0]}) is interface
+    new = interface.with_parts({id(fields[1]): fields[2]})
+    assert [one.field for one in new.carried] == [fields[0], fields[2], None]
+    assert new.carried[1].on == "slave"
+    assert new.surface is interface.surface
