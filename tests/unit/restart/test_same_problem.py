@@ -192,6 +192,10 @@ def test_a_run_of_another_problem_is_one_line(change):
     new, said = RUNS[change]
     with pytest.raises(InputError, match=said):
         _run(**new).restore(kept)
+    for part in ("common", "nodal"):
+        before = {n: v for n, v in getattr(kept, part).items() if n not in ("problem", "position")}
+        with pytest.raises(InputError, match=r"^no state of this version"):
+            _run().restore(replace(kept, **{part: before}))
     other = _run(last=-0.04)
     other.restore(replace(kept, common=dict(kept.common)))
     assert [accepted.step for accepted in other.run()] == ["further"]

@@ -61,6 +61,8 @@ def check_run(kept: Persistent, now: Mapping[str, Any], like: Persistent, begun:
     Raises:
         InputError: Names what differs.
     """
+    if "problem" not in kept.common or "position" not in kept.nodal:
+        raise InputError("no state of this version: it does not say of which problem it is")
     check_described(kept.common["problem"], now, {"steps": begun})
     check_positions(kept.nodal["position"], like.nodal["position"], "node")
     for one, given in zip(like.points, kept.points, strict=True):
