@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, override
 
@@ -18,13 +19,14 @@ from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.hints import warn_of_overlaps
+from anisocontact.contact.multiplier_schemes import IN_CYCLES, SOFTER
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
 from anisocontact.solver.stepping.script_state import ScriptState
 from anisocontact.solver.strategies.database import Database, OptionValue
-from anisocontact.solver.strategies.newton import Newton
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly, TrialState
 from anisocontact.solver.system.fields import fields_beside
@@ -177,7 +179,7 @@ class ContactProblem(AssembledSystem):
         self._fields.measure(self._assembly.bodies)
         self._fields.weigh_by(lambda: self._start(x))
         with self._options.blamed(), self._options:
-            result = self.newton.solve(x)
+            result = self._equilibrium(x)
         reason = result.reason
         if not reason:
             self.evaluate(x)
@@ -191,6 +193,20 @@ class ContactProblem(AssembledSystem):
         for body in self._bodies:
             body.commit()
         return result.iterations
+
+    def _equilibrium(self, x: Vec) -> NewtonResult:
+        """Newton's method, with multipliers found in other ways where the usual one fails."""
+        start, contacts = x.copy(), self.contact_term
+        result = self.newton.solve(x)
+        for way in (SOFTER, IN_CYCLES):
+            if not result.reason or way not in contacts.ways:
+                continue
+            start.copy(x)
+            contacts.roll_back()
+            contacts.take_way(way)
+            again = self.newton.solve(x)
+            result = replace(again, iterations=result.iterations + again.iterations)
+        return result
 
     @typed
     def solve_steps(
