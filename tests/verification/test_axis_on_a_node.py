@@ -10,11 +10,14 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
+from anisocontact.contact.hints import on_field_axes
 from anisocontact.interface import AdhesionAndFriction, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*axis of a direction:anisocontact.ModelWarning")
 
 MU = (0.2, 0.4)
 HELD = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
@@ -65,6 +68,32 @@ def test_the_node_counts_with_its_area(cells):
     """
     force = _dragged(cells)[:3]
     assert abs(force[1]) <= 1.2 / cells**2 * 0.5 * (MU[1] - MU[0]) * force[2]
+
+
+@pytest.mark.parametrize(
+    ("slave", "master", "line"),
+    [
+        (2, 3, "slave points with 25.0% of its area lie"),
+        (3, 2, "nodes of the master lie"),
+        (3, 3, ""),
+    ],
+)
+def test_an_arbitrary_direction_is_told(slave, master, line):
+    """Requirement: who is given a direction that nobody chose hears of it, with its share.
+
+    Source: an even number of facets has a node in the middle; of 2 x 2 a quarter of the area is at
+    it, of 3 x 3 none.
+    """
+    boxes = {
+        "block": BoxSpec((-0.5, -0.5, 0), (1, 1, 0.5), (slave, slave, 1)),
+        "base": BoxSpec((-1, -1, -0.5), (2, 2, 0.5), (master, master, 1)),
+    }
+    rings = make_directions("polar", axis=((0, 0, 0), (0, 0, 1)), angle=0.0)
+    law = Friction(coefficients=MU, directions=rings)
+    contact = Contact(build_box(boxes), "block.bottom", "base.top", law)
+    told = on_field_axes([contact])
+    assert len(told) == bool(line)
+    assert all(f"{line} on the axis of a direction field" in text for text in told)
 
 
 def test_what_has_no_such_part_stays_as_it_is():

@@ -64,7 +64,7 @@ def _is_mesh(path: Path) -> bool:
 def contents(built: Built) -> list[str]:
     """What a case contains, in a few lines."""
     from anisocontact.contact import doubtful_sides
-    from anisocontact.contact.hints import jumping_rules, uneven
+    from anisocontact.contact.hints import jumping_rules, on_field_axes, uneven
 
     case, problem = built.file.case, built.problem
     model = problem.model
@@ -103,7 +103,8 @@ def contents(built: Built) -> list[str]:
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"note      {text}" for text in uneven(problem.contacts)]
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
-    doubts = (*doubtful_sides(problem.contacts), *jumping_rules(problem.contacts))
+    contacts = problem.contacts
+    doubts = (*doubtful_sides(contacts), *jumping_rules(contacts), *on_field_axes(contacts))
     return [*lines, *(f"warning   {line}" for line in doubts)]
 
 

@@ -44,9 +44,19 @@ def off_axes[L: (Interface, ContactLaw)](law: L, x: Floats, size: float, comm: A
 def _beside(axis: Floats, x: Floats, size: float, comm: Any) -> list[float] | None:
     """An axis, point and direction in (6,), beside the points that lie on it; None if none does."""
     along = axis[3:] / np.linalg.norm(axis[3:])
-    away = np.linalg.norm(np.cross(along, x - axis[:3]), axis=1)
-    if not comm.allreduce(int((away <= ON * size).sum())):
+    if not comm.allreduce(int((distances(axis, x) <= ON * size).sum())):
         return None
     sizes = np.abs(along)
     across = np.cross(along, np.eye(3)[(sizes <= sizes.min() + ON).argmax()])
     return [*(axis[:3] + OFF * size * across / np.linalg.norm(across)), *along]
+
+
+def distances(axis: Floats, x: Floats) -> Floats:
+    """Distances of points from an axis, (n,), length.
+
+    Args:
+        axis: A point of it and its direction, (6,).
+        x: Points, (n, 3), length.
+    """
+    along = axis[3:] / np.linalg.norm(axis[3:])
+    return np.asarray(np.linalg.norm(np.cross(along, x - axis[:3]), axis=1))

@@ -12,6 +12,7 @@ from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.facet_mesh import node_positions
+from anisocontact.contact.field_axes import OFF, distances
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.one_pass import TOUCHING
 from anisocontact.contact.sharp_edges import SMOOTH
@@ -109,6 +110,45 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
         A line for each of them.
     """
     return [*coarse_slaves(contacts), *stiff_slaves(contacts)]
+
+
+def on_field_axes(contacts: Sequence[Contact]) -> list[str]:
+    """Contacts with nodes on the axis of a polar or spiral field, where there is no direction.
+
+    They have that of an axis beside them, see `off_axes`. Collective.
+
+    Args:
+        contacts: The contacts.
+
+    Returns:
+        A line for each contact and axis.
+    """
+    found = []
+    for contact in contacts:
+        fields = [one.field.named[1] for one in contact.interface.carried if one.field is not None]
+        for axis in dict.fromkeys(tuple(values["axis"]) for values in fields if "axis" in values):
+            where = _on_axis(contact, np.array(axis))
+            if where:
+                found.append(
+                    f"contact of {' with '.join(contact.groups)}: {where} on the axis of a "
+                    "direction field, where there is no direction: an arbitrary one is taken, and "
+                    "that part of the friction is uncertain; finer facets make it smaller, an axis "
+                    "off the nodes avoids it"
+                )
+    return found
+
+
+def _on_axis(contact: Contact, axis: Floats) -> str:
+    """What lies where an axis was put beside it, in words; empty if nothing does."""
+    near, points = 2.0 * OFF * contact.facet_size, contact.slave_points.quadrature
+    own = distances(axis, points.reference) <= near
+    x, met = node_positions(contact.space), contact.nodes_of_groups[1:]
+    opposite = sum(int((distances(axis, x[nodes]) <= near).sum()) for nodes in met)
+    local = np.array([own.sum(), points.areas[own].sum(), points.areas.sum(), opposite])
+    count, area, all_of_it, opposite = contact.space.mesh.comm.allreduce(local)
+    if count:
+        return f"slave points with {area / all_of_it:.1%} of its area lie"
+    return "nodes of the master lie" if opposite else ""
 
 
 #: What tetrahedra of order 1 do to pressures, docs/verification/mortar.md.
@@ -329,7 +369,7 @@ def warn_of(contacts: Sequence[Contact]) -> None:
     Args:
         contacts: The contacts, as of `doubtful_sides`.
     """
-    _warn(doubtful_sides(contacts))
+    _warn([*doubtful_sides(contacts), *on_field_axes(contacts)])
 
 
 def warn_of_overlaps(contacts: Sequence[Contact]) -> None:

@@ -8,7 +8,14 @@ from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
-from anisocontact.contact.hints import MISSED, faceted, jumping_rules, overlapping, pressed_aside
+from anisocontact.contact.hints import (
+    MISSED,
+    faceted,
+    jumping_rules,
+    on_field_axes,
+    overlapping,
+    pressed_aside,
+)
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.alarms import UNBALANCED
@@ -46,7 +53,7 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         (contact, _pair(entry), entry["facet_size"])
         for contact, entry in zip(contacts, shown, strict=True)
     )
-    lines = [*doubtful_sides(contacts), *jumping_rules(contacts)]
+    lines = [*doubtful_sides(contacts), *jumping_rules(contacts), *on_field_axes(contacts)]
     return [*lines, *overlapping(pairs, "adjust = true")]
 
 
