@@ -33,6 +33,8 @@ LEVELLED = 2.0
 MATCHING = 0.1
 #: Share of the nodes of the slave that do, from which on they do.
 MATCHED = 0.5
+#: Share of the area of a slave whose friction has an arbitrary direction that is worth a word.
+UNCERTAIN = 1e-3
 
 
 def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[str]:
@@ -146,9 +148,10 @@ def _on_axis(contact: Contact, axis: Floats) -> str:
     opposite = sum(int((distances(axis, x[nodes]) <= near).sum()) for nodes in met)
     local = np.array([own.sum(), points.areas[own].sum(), points.areas.sum(), opposite])
     count, area, all_of_it, opposite = contact.space.mesh.comm.allreduce(local)
-    if count:
-        return f"slave points with {area / all_of_it:.1%} of its area lie"
-    return "nodes of the master lie" if opposite else ""
+    share = (area if count else opposite and contact.master_size**2) / all_of_it
+    if share < UNCERTAIN:
+        return ""
+    return f"{'slave points' if count else 'nodes of the master'} with {share:.2g} of its area lie"
 
 
 #: What tetrahedra of order 1 do to pressures, docs/verification/mortar.md.
