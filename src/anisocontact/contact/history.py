@@ -73,23 +73,20 @@ class Slid:
         return cls(state["slip_accumulated"].copy(), state["dissipation"].copy(), touching)
 
 
-def dissipated(state: State, way: Sequence[Slid], end: State, coulomb: bool) -> Floats:
+def dissipated(state: State, way: Sequence[Slid], end: State) -> Floats:
     """What friction has dissipated since the start, with the force that it has on the way, (n,).
 
     The law takes the slip from the accepted state at once, `D = -T . s` with the force of the end.
     In equilibrium pressure grows with the slip, and friction with the pressure: its mean is right
-    to second order. A law that is none of Coulomb's keeps the force of the end. Where bodies flow
-    the way there is taken piece by piece, by the sum of the means; while a point has not slipped
-    its force at yield is taken for that of the next state.
+    to second order; of a law in Python whose friction does not grow with the pressure, to first
+    order. Where bodies flow the way there is taken piece by piece, by the sum of the means; while a
+    point has not slipped its force at yield is taken for that of the next state.
 
     Args:
         state: The accepted state.
         way: What slip had come to on the way of a flow, empty in equilibrium.
         end: The state where the way ends.
-        coulomb: Whether friction is known to be proportional to the pressure.
     """
-    if not way and not coulomb:
-        return np.asarray(end["dissipation"])
     if not way:
         pressure = np.where(end["pressure"] > 0.0, end["pressure"], np.inf)
         share = 0.5 * (1.0 + state["pressure"] / pressure)

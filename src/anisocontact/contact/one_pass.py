@@ -328,8 +328,7 @@ class Pass:
 
     def _rubbed(self, end: State) -> Floats:
         """What friction has dissipated from the start to a state that ends an increment, (n,)."""
-        coulomb = not self.trials.interface.tangential.in_python
-        return dissipated(self.state, self._way, end, coulomb)
+        return dissipated(self.state, self._way, end)
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
