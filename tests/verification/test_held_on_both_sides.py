@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pytest
 
+from anisocontact.base.array_types import Floats
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
-from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
+from anisocontact.mesh import Body, Placement, PlaneStrain, Rotation, build_mesh, make_shape
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import CoupledFace, Problem, Solver, Step
+from anisocontact.solver import CoupledFace, Cylindrical, Problem, Solver, Step
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.report import Accepted
 from anisocontact.surfaces import make_surface
 
 WALL = {"low.left": {"x": 0.0, "y": 0.0}, "up.left": {"x": 0.0, "y": 0.0}}
+CLAMPED = {"displacement": WALL}
 
 
-def _run(strategy: str, columns: int = 4, gap: float = 0.0) -> tuple[list[Accepted], Contact]:
+def _run(
+    strategy: str, columns: int = 4, gap: float = 0.0, wall: Mapping[str, Any] = CLAMPED
+) -> tuple[list[Accepted], Contact]:
     """Two beams clamped at one wall, pressed together and bent to and fro; corners at one place."""
     low = make_shape("rectangle", origin=(0, -1), size=(4, 1), cells=(4, 2))
     up = make_shape("rectangle", origin=(0, gap), size=(4, 1), cells=(columns, 2))
@@ -27,7 +34,7 @@ def _run(strategy: str, columns: int = 4, gap: float = 0.0) -> tuple[list[Accept
     contact = Contact(model, "up.bottom", "low.top", Friction(coefficients=0.2))
     problem = Problem(model, {"low": steel, "up": steel}, [contact])
     squeeze = {"low.bottom": 1.0, "up.top": 1.0}
-    steps = [Step("press", 1, WALL, pressure=squeeze)]
+    steps = [Step("press", 1, pressure=squeeze, **wall)]
     for y in (0.3, -0.3):
         ends = {"up.right": {"y": y}, "low.right": {"y": y}}
         steps.append(Step("bend", 1, traction=ends))
@@ -112,3 +119,63 @@ def test_a_face_on_a_rigid_body_is_held_as_by_supports(material: str, free: str)
     assert by_body.iterations == by_supports.iterations
     (one,), (other,) = by_body.resultants.values(), by_supports.resultants.values()
     np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-7)
+
+
+def _leaning(degrees: float, guided: bool) -> tuple[Accepted, Floats]:
+    """A block that stands on a symmetry plane, with its upper edge led into the wall beside it.
+
+    Returns:
+        What was accepted, and the force of the wall along its normal and up.
+    """
+    angle = np.radians(degrees)
+    away, up = frame = np.array(
+        [[np.cos(angle), np.sin(angle), 0.0], [-np.sin(angle), np.cos(angle), 0.0]]
+    )
+    block = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(3, 3))
+    place = Placement(rotate=Rotation(axis=(0, 0, 1), angle=angle))
+    model = build_mesh([Body("block", block, place)], idealisation=PlaneStrain())
+    edge = np.argmin(np.linalg.norm(model.positions - up, axis=1), keepdims=True)
+    model.name_nodes("block.edge", edge.astype(np.int32))
+    wall = make_surface("plane", point=[0, 0, 0], normal=away)
+    contact = Contact(model, "block.left", wall, Friction(coefficients=0.2))
+    steel = {"block": make_material("linear-elastic", E=1e3, nu=0.3)}
+    problem = Problem(model, steel, [contact], symmetry=["block.bottom"])
+    guide = Cylindrical({"radial": -0.01}, point=up - 4.0 * away)
+    into: dict[str, Any] = {"displacement": {"block.edge": {"x": -0.01}}}
+    if guided:
+        into = {"cylindrical": {"block.edge": guide}}
+    step = Step("press", 1, pressure={"block.right": 2.0}, **into)
+    (accepted,) = Solver(problem, [step]).run()
+    return accepted, frame @ accepted.resultants[contact.name][0]
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])
+def test_a_guide_along_the_normal_holds_as_a_displacement_along_an_axis(angle: float) -> None:
+    """Guides said nothing of the pressure where they hold, and multipliers failed there.
+
+    Requirement: all of it turned, with a guide in the place of a displacement along x, has the
+    forces turned, and the same is told. Tolerance: that of Newton's method.
+    """
+    by_axis, force = _leaning(0.0, False)
+    by_guide, turned = _leaning(angle, True)
+    assert not by_guide.relaxed
+    assert len(by_guide.undetermined) == 1
+    assert by_guide.undetermined == by_axis.undetermined
+    np.testing.assert_allclose(turned, force, rtol=1e-7, atol=1e-7)
+
+
+def test_walls_of_guides_are_those_of_displacements() -> None:
+    """The two clamped beams, held at their wall along two directions that are no axes.
+
+    Requirement: what holds a node along all directions is the same whatever the directions are.
+    Tolerance: that of Newton's method.
+    """
+    still = Cylindrical({"radial": 0.0, "tangential": 0.0}, point=(3.0, -5.0, 0.0))
+    by_axes, contact = _run("direct")
+    by_guides, _ = _run("direct", wall={"cylindrical": dict.fromkeys(WALL, still)})
+    assert [a.undetermined for a in by_guides] == [a.undetermined for a in by_axes]
+    assert by_axes[-1].undetermined == {contact.name: 1}
+    for group in WALL:
+        assert by_guides[-1].reactions[group] == pytest.approx(
+            by_axes[-1].reactions[group], abs=1e-7
+        )

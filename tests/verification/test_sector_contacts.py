@@ -148,3 +148,19 @@ def test_cut_faces_whose_meshes_do_not_match_are_told():
         assert len(told) == (moved > 0.0)
         assert all(line.startswith("contact 'tyre.inner': slave nodes") for line in told)
         assert all("cyclic[1]" in line and "30 degrees apart" in line for line in told)
+
+
+def test_what_is_held_beyond_the_cut_is_held_along_turned_directions() -> None:
+    """All nodes are prescribed along radial directions, which a contact is told.
+
+    Requirement: every slave node and what is opposite to it are held along the normal, those next
+    to the cut too, whose master is turned by a sector.
+    """
+    model = tyre_on_hub(6, 36, plane=False, order=1)
+    contact = Contact(model, "tyre.inner", "hub.outer", Friction(coefficients=0.1))
+    rubber = make_material("neo-hookean", E=1000.0, nu=0.3)
+    Problem(model, {"hub": rubber, "tyre": rubber}, [contact], cyclic=cut(6))
+    away = model.positions * [1.0, 1.0, 0.0]
+    away /= np.linalg.norm(away, axis=1)[:, None]
+    contact.take_supports(away[:, :, None] * away[:, None], [])
+    assert contact.trials.immovable.all()

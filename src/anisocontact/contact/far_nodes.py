@@ -132,16 +132,16 @@ def all_marked(space: Any, flags: Flags, named: Locals) -> bool:
     return all(comm.allgather(bool(found.all())))
 
 
-def with_ghosts(space: Any, flags: Flags) -> Flags:
-    """Flags of local nodes with those of ghosts as their owners have them; collective.
+def with_ghosts[T: np.generic](space: Any, nodal: npt.NDArray[T]) -> npt.NDArray[T]:
+    """Values of local nodes with those of ghosts as their owners have them; collective.
 
     Args:
         space: Vector Lagrange space of the displacement.
-        flags: Of the local nodes, (local nodes, ...).
+        nodal: Of the local nodes, (local nodes, ...).
     """
     index_map = space.dofmap.index_map
-    own = flags[: index_map.size_local]
+    own = nodal[: index_map.size_local]
     owners = Split(space.mesh.comm, index_map.size_local)
     if space.mesh.comm.size == 1:
-        return flags
+        return nodal
     return np.concatenate([own, owners.fetch(own, index_map.ghosts)])

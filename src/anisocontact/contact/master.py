@@ -182,8 +182,12 @@ class Master(Protocol):
         """
         return None
 
-    def take_fixed(self, fixed: Flags) -> None:
-        """Learn which displacements of the local nodes are prescribed, (nodes, 3); collective."""
+    def take_fixed(self, fixed: Floats) -> None:
+        """Learn along which directions local nodes are prescribed; collective.
+
+        Args:
+            fixed: Projections on these, (nodes, 3, 3).
+        """
         return
 
     def immovable(self, normal: Floats) -> bool | Flags:

@@ -15,6 +15,9 @@ from anisocontact.contact.sides import Sides
 from anisocontact.interface import ContactLaw, State
 from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
+#: Trace of the projection on held directions above which these are all: it is their number.
+ALL = 2.5
+
 
 class MeshedMaster(Master):
     """Both sides where they are now, the laws, and the closest points of the master.
@@ -104,8 +107,9 @@ class MeshedMaster(Master):
         return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
 
     @override
-    def take_fixed(self, fixed: Flags) -> None:
-        here = bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
+    def take_fixed(self, fixed: Floats) -> None:
+        held = np.trace(fixed, axis1=1, axis2=2) > ALL
+        here = bool(held[self._gathered.local_names(self._gathered.own.nodes)].all())
         self._rests = all(self._comm.allgather(here))
 
     @override

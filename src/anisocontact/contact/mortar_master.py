@@ -30,7 +30,7 @@ from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
-from anisocontact.contact.points import unmoved
+from anisocontact.contact.points import FREE, free_along
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.sides import Sides
@@ -78,8 +78,8 @@ class MortarMaster(MeshedMaster):
         self._points = points
         self._resting: Sequence[Resting] = ()
         self._flags: Sequence[Resting] = ()
-        self._prescribed: Flags | None = None
-        self._fixed: Flags | None = None
+        self._prescribed: Floats | None = None
+        self._fixed: Floats | None = None
         self._fold = Fold(points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
@@ -198,9 +198,9 @@ class MortarMaster(MeshedMaster):
 
     def _spread_flags(self) -> None:
         """Take what is held among gathered nodes as well; collective."""
-        spread = self._gathered.everywhere
+        spread, moved = self._gathered.everywhere, self._gathered.moved
         self._flags = [(spread(there), direction) for there, direction in self._resting]
-        self._fixed = None if self._prescribed is None else spread(self._prescribed)
+        self._fixed = None if self._prescribed is None else spread(moved(self._prescribed))
 
     @override
     def answer(
@@ -239,7 +239,7 @@ class MortarMaster(MeshedMaster):
             self._at = self._placed(self._at.weights)
 
     @override
-    def take_fixed(self, fixed: Flags) -> None:
+    def take_fixed(self, fixed: Floats) -> None:
         super().take_fixed(fixed)
         self._prescribed = fixed
         self._spread_flags()
@@ -248,10 +248,9 @@ class MortarMaster(MeshedMaster):
     def immovable(self, normal: Floats) -> bool | Flags:
         if self._rests or self._fixed is None:
             return self._rests
-        weights = self._at.weights
-        there = self._fixed[self._gathered.local_names(weights.masters)]
-        moving = np.abs(weights.shares)[:, :, None] * ~there
-        return self._located & unmoved(moving.sum(axis=1), normal)
+        masters, shares = self._at.weights.masters, np.abs(self._at.weights.shares)
+        free = shares * free_along(self._fixed, masters, shares > 0.0, normal)
+        return self._located & (free.sum(axis=1) < FREE)
 
     @property
     @override

@@ -103,7 +103,7 @@ class Pass:
         self.trials = Trials(points, master, law, self.state, self._comm)
         check_start(self, points.size)
         self._augmentation = augmentation
-        self._fixed: Flags | None = None
+        self._fixed: Floats | None = None
         if augmentation is not None:
             self.trials.multipliers.augment(augmentation, points.size)
         self._begin()
@@ -167,11 +167,12 @@ class Pass:
             found["adhesion.stiffness"] = interface.tangential.stiffest()
         return found
 
-    def take_supports(self, fixed: Flags, resting: Sequence[Resting]) -> None:
+    def take_supports(self, fixed: Floats, resting: Sequence[Resting]) -> None:
         """Learn which displacements are prescribed from now on.
 
         Args:
-            fixed: Of the local nodes, (nodes, 3): points that cannot move keep their penalty.
+            fixed: Projections on directions along which local nodes are prescribed, (nodes, 3, 3):
+                points that cannot move keep their penalty.
             resting: Nodes that are held where they are along directions.
         """
         self.master.take_resting(resting, self.state)

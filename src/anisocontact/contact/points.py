@@ -70,16 +70,17 @@ class SlavePoints:
         self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)
         self.size = mean_size(quadrature, comm)
 
-    def held(self, fixed: Flags, normal: Floats) -> Flags:
+    def held(self, fixed: Floats, normal: Floats) -> Flags:
         """Points that cannot move along the normal.
 
         Args:
-            fixed: Prescribed displacements of the local nodes, (nodes, 3).
+            fixed: Projections on prescribed directions of the local nodes, (nodes, 3, 3).
             normal: At the points, (n, 3).
         """
         # images of nodes have the numbers after them, row by row, see `Sweep`
-        moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes % max(len(fixed), 1)]
-        return unmoved(moving.any(axis=1), normal)
+        nodes = self.nodes % max(len(fixed), 1)
+        free = free_along(fixed, nodes, self.shape != 0.0, normal)
+        return np.asarray(free.max(axis=1) < FREE)
 
     def peaks(self, areas: Floats) -> Flags:
         """Points whose tractions count among peaks, of those with some areas, (n,)."""
@@ -159,11 +160,18 @@ class SlavePoints:
             return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
 
 
-def unmoved(free: Floats | Flags, normal: Floats) -> Flags:
-    """Points that do not move along the normal.
+def free_along(fixed: Floats, nodes: Locals, there: Flags, normal: Floats) -> Floats:
+    """Share of the normal of each point along which its nodes can move, (n, k).
 
     Args:
-        free: Share of each displacement that is free, (n, 3).
+        fixed: Projections on prescribed directions, (nodes, 3, 3); of images that are turned they
+            turn back first.
+        nodes: Of each point, (n, k).
+        there: Which of these count, (n, k); none at the others.
         normal: At the points, (n, 3).
     """
-    return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
+    out = np.zeros(nodes.shape)
+    n = normal[np.nonzero(there)[0]]
+    held = np.einsum("mij,mj->mi", fixed[nodes[there]], n)
+    out[there] = np.sqrt(np.maximum((n**2).sum(axis=1) - (held**2).sum(axis=1), 0.0))
+    return out

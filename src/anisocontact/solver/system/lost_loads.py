@@ -52,12 +52,12 @@ def check_lost_loads(
 
 def unsupported(force: Floats, supported: Iterable[Supported]) -> Floats:
     """Forces on the nodes this rank owns without what acts along held directions, (nodes, 3)."""
-    onto = _supported_space(len(force), supported)
+    onto = supported_space(len(force), supported)
     return np.asarray(force - np.einsum("nij,nj->ni", onto, force))
 
 
-def _supported_space(count: int, supported: Iterable[Supported]) -> Floats:
-    """Projectors on what is held of each node, (nodes, 3, 3): directions made orthonormal."""
+def supported_space(count: int, supported: Iterable[Supported]) -> Floats:
+    """Projections on what is held of each node, (nodes, 3, 3): directions made orthonormal."""
     onto = np.zeros((count, 3, 3))
     for nodes, direction in supported:
         along = np.broadcast_to(direction, (len(nodes), 3))

@@ -11,9 +11,9 @@ from anisocontact.base.errors import InputError
 from anisocontact.bulk.material_warnings import doubtful_materials
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.mesh.pieces import unjoined_bodies
-from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported
+from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
 from anisocontact.solver.system.parts import Parts
-from anisocontact.solver.terms.free_modes import SupportedFrame
+from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, along_axes
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.sector_contacts import halved_nodes
@@ -47,25 +47,24 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     parts.assembly.terms.begin(step, released)
     if parts.assembly.constraints.ties is not None:
         parts.assembly.constraints.ties.begin(held, _on_bodies(parts))
-    _begin_contacts(parts, len(start))
+    _begin_contacts(parts, held, len(start) // 3)
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
     frames = parts.rigid.supported_frames() + _cut_faces(parts)
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
 
 
-def _begin_contacts(parts: Parts, count: int) -> None:
-    """Let contacts know which nodes are prescribed, and which are held along which directions."""
-    fixed = np.zeros(count, dtype=bool)
-    fixed[parts.supports.unknowns] = True
-    fixed[parts.rigid.prescribed_of_faces()] = True
-    held = [*parts.supports.resting(), *parts.guides.resting()]
-    there = np.zeros((count // 3, len(held)), dtype=bool)
-    for i, (nodes, _) in enumerate(held):
+def _begin_contacts(parts: Parts, held: Sequence[Supported], count: int) -> None:
+    """Let contacts know along which directions nodes are prescribed, and along which they rest."""
+    of_faces = along_axes(parts.rigid.prescribed_of_faces())
+    fixed = with_ghosts(parts.model.space, supported_space(count, [*held, *of_faces]))
+    still = [*parts.supports.resting(), *parts.guides.resting()]
+    there = np.zeros((count, len(still)), dtype=bool)
+    for i, (nodes, _) in enumerate(still):
         there[nodes, i] = True
-    flags = with_ghosts(parts.model.space, np.hstack([fixed.reshape(-1, 3), there]))
-    resting = [(flags[:, 3 + i], direction) for i, (_, direction) in enumerate(held)]
+    there = with_ghosts(parts.model.space, there)
+    resting = [(there[:, i], direction) for i, (_, direction) in enumerate(still)]
     for contact in parts.contacts:
-        contact.take_supports(flags[:, :3], resting)
+        contact.take_supports(fixed, resting)
 
 
 def _rehearsed(

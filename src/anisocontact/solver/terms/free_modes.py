@@ -25,6 +25,12 @@ ALONG = 1.0 - 1e-6
 type Supported = tuple[Ints, Floats]
 
 
+def along_axes(unknowns: Ints) -> list[Supported]:
+    """Nodes of unknowns along each axis, and the axis."""
+    nodes, axes = np.divmod(unknowns, 3)
+    return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+
+
 @dataclass(frozen=True)
 class SupportedFrame:
     """Nodes that move as a rigid body, some components of whose motion are held.

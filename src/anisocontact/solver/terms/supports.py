@@ -9,6 +9,7 @@ from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.free_modes import Supported, along_axes
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.turn import Turn
 
@@ -101,15 +102,13 @@ class Supports:
         count = _PLACES if any(isinstance(g, Course) for g in self._goals.values()) else 1
         return np.arange(1, count + 1) / count
 
-    def supported(self) -> list[tuple[Ints, Floats]]:
+    def supported(self) -> list[Supported]:
         """Nodes that are held along each axis, and the axis."""
-        nodes, axes = np.divmod(self.unknowns, 3)
-        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+        return along_axes(self.unknowns)
 
-    def resting(self) -> list[tuple[Ints, Floats]]:
+    def resting(self) -> list[Supported]:
         """Nodes that are held where they are all along the step along each axis, and the axis."""
-        nodes, axes = np.divmod(self.unknowns[self._still()], 3)
-        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+        return along_axes(self.unknowns[self._still()])
 
     @property
     def rest(self) -> bool:
