@@ -346,3 +346,32 @@ cylindrical = { "ring.inner" = { radial = VALUE }, "ring.outer" = { radial = 0 }
         Path("case.toml").write_text(case.replace("VALUE", wrong))
         with pytest.raises(InputError, match=said):
             build(load("case.toml"))
+
+
+def test_a_tube_is_slid_along_a_shaft_that_alone_keeps_it_from_turning():
+    """By more than a facet, led at its outer face; what is tangential is left to friction.
+
+    Requirement: it is not taken for a body that was thrown off, and slides everywhere. Source:
+    Coulomb: along the shaft friction times the pressure, whatever that is. Tolerance: 1e-6, that
+    of the axial direction of slip.
+    """
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.laws import Friction
+    from anisocontact.mesh import Body, build_mesh, make_shape
+    from anisocontact.solver import Problem, Step
+    from anisocontact.surfaces import make_surface
+
+    tube = make_shape("ring", inner=10, outer=14, length=6, cells=(1, 16, 4))
+    model = build_mesh([Body("tube", tube)])
+    shaft = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=10)
+    contact = Contact(model, "tube.inner", shaft, Friction(coefficients=0.2))
+    steel = {"tube": make_material("linear-elastic", E=E, nu=NU)}
+    slide = Step("slide", 1, cylindrical={"tube.outer": led(radial=-0.02, axial=-6.0)})
+    accepted = run(Problem(model, steel, [contact]), slide)
+    assert contact.slave_points.size < 6.0, "by more than a facet"
+    normal = contact.last.pressure @ contact.areas
+    assert normal > 1000.0
+    assert accepted.resultants["tube.inner"][0] == pytest.approx(
+        [0, 0, 0.2 * normal], rel=1e-6, abs=1e-6
+    )

@@ -331,7 +331,7 @@ class Stabilisation(Term):
         Since the attempt began; springs by what their anchors have moved and by their stretch.
         """
         moved = u - self._begun
-        ways = [np.abs(moved[nodes] @ axis).max(initial=0.0) for nodes, axis in self._held]
+        ways = [np.abs((moved[n] * e).sum(axis=1)).max(initial=0.0) for n, e in self._held]
         for frame in self._frames:
             ways.append(np.abs(moved[frame.nodes]).max(initial=0.0))
         for contact in self._contacts:
