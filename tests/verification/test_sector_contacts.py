@@ -164,3 +164,26 @@ def test_what_is_held_beyond_the_cut_is_held_along_turned_directions() -> None:
     away /= np.linalg.norm(away, axis=1)[:, None]
     contact.take_supports(away[:, :, None] * away[:, None], [])
     assert contact.trials.immovable.all()
+
+
+def test_what_supports_hold_on_both_sides_is_that_of_the_whole() -> None:
+    """A tyre is pressed on its hub, and one end of both is held along the directions of a cylinder.
+
+    Requirement: as many points as in the whole have no pressure of their own, those at the cut
+    too, whose master follows what is held, and all others have theirs. Source: the solution of the
+    whole is the same in every sector. Tolerance: 1e-8, that of Newton's method.
+    """
+    counts, pressures = [], []
+    for parts in (1, 6):
+        model = tyre_on_hub(parts, 36, plane=False, order=1)
+        contact = Contact(model, "tyre.inner", "hub.outer", Friction(coefficients=0.1))
+        steel = make_material("linear-elastic", E=1000.0, nu=0.3)
+        problem = Problem(model, {"hub": steel, "tyre": steel}, [contact], cyclic=cut(parts))
+        still = Cylindrical({"radial": 0.0, "tangential": 0.0, "axial": 0.0})
+        ends = {"tyre.bottom": still, "hub.bottom": still}
+        step = Step("press", 1, cylindrical=ends, pressure={"tyre.outer": 1.0})
+        (accepted,) = Solver(problem, [step], strategy="direct").run()
+        counts.append(parts * accepted.undetermined[contact.name])
+        pressures.append([contact.last.pressure.max(), contact.last.pressure.min()])
+    assert counts == [72, 72]
+    assert pressures[1] == pytest.approx(pressures[0], rel=1e-8)

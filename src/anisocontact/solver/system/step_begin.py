@@ -56,7 +56,10 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
 def _begin_contacts(parts: Parts, held: Sequence[Supported], count: int) -> None:
     """Let contacts know along which directions nodes are prescribed, and along which they rest."""
     of_faces = along_axes(parts.rigid.prescribed_of_faces())
-    fixed = with_ghosts(parts.model.space, supported_space(count, [*held, *of_faces]))
+    fixed = supported_space(count, [*held, *of_faces])
+    if parts.assembly.constraints.ties is not None:
+        parts.assembly.constraints.ties.hold_cuts(fixed)
+    fixed = with_ghosts(parts.model.space, fixed)
     still = [*parts.supports.resting(), *parts.guides.resting()]
     there = np.zeros((count, len(still)), dtype=bool)
     for i, (nodes, _) in enumerate(still):

@@ -227,6 +227,21 @@ class TiedFaces:
         for cut in self._cuts.values():
             cut.check_prescribed(values_everywhere, step)
 
+    def hold_cuts(self, fixed: Floats) -> None:
+        """Hold slave nodes of cut faces as what they follow is held, turned; collective.
+
+        Args:
+            fixed: Projections on held directions of the local nodes, which are changed,
+                (nodes, 3, 3).
+        """
+        owned = self._model.space.dofmap.index_map.size_local
+        everywhere = self._everywhere(fixed[:owned], 0.0) if self._cuts else fixed
+        for cut in self._cuts.values():
+            seam, turn = cut.seam, cut.turning.matrix
+            own = self._groups.owned()[seam.following]
+            held = turn @ everywhere[seam.leading[own]] @ turn.T
+            fixed[self._own(seam.following)] = held
+
     def begin(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> None:
         """Take over what else holds the nodes in a step.
 
@@ -364,7 +379,7 @@ class TiedFaces:
         """Values of all nodes of the groups from those of the nodes of each rank; collective."""
         groups, first = self._groups, self._model.space.dofmap.index_map.local_range[0]
         here = groups.owned()
-        values = np.full((len(groups.nodes), 3), nothing, dtype=own.dtype)
+        values = np.full((len(groups.nodes), *own.shape[1:]), nothing, dtype=own.dtype)
         values[here] = own[groups.nodes[here] - first]
         owner = np.asarray(self._model.mesh.comm.allgather(here)).argmax(axis=0)
         every = np.asarray(self._model.mesh.comm.allgather(values))
