@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.base.one_history import OneHistory
 from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
 from anisocontact.contact.beyond_cuts import Seam
@@ -32,7 +33,7 @@ from anisocontact.rigid import MovingSurface, RigidBody
 
 
 @typed
-class Contact(Pass):
+class Contact(Pass, OneHistory):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
     At every slave point `t = N n + T`, from what is opposite on the master. The

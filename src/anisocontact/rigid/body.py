@@ -13,6 +13,7 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.one_history import OneHistory
 from anisocontact.base.typed import typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
@@ -53,7 +54,7 @@ def at_rest() -> Pose:
 
 
 @typed
-class RigidBody:
+class RigidBody(OneHistory):
     """A rigid body that carries the surfaces of one or several contacts.
 
     A point `X` of it goes to `x = c + d + R (X - c)`, `c` the reference point. From one accepted

@@ -169,6 +169,8 @@ class ContactProblem(AssembledSystem):
         """Newton iterations to the equilibrium, which is accepted."""
         for contact in self.contacts:
             contact.check_at_rest()
+        for body in self._bodies:
+            body.check_history(self, "rigid body")
         self._check_finite()
         terms = self._assembly.terms
         terms.set_load_factor(1.0, dt)
@@ -192,6 +194,7 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
+            body.history_of = self
         return result.iterations
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
@@ -288,6 +291,8 @@ class ContactProblem(AssembledSystem):
             self._state.take(kept)
         except InputError as error:
             raise InputError(f"'{file}': {error}", "path") from None
+        for body in self._bodies:
+            body.history_of = self
 
     def close(self) -> None:
         """Give back the objects of PETSc."""

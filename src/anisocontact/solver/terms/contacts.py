@@ -37,6 +37,8 @@ class Contacts(Term):
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
+        for contact in self._all:
+            contact.check_history(self, "contact")
         self._dt = dt
 
     @override
@@ -74,6 +76,7 @@ class Contacts(Term):
     def accept(self, u: Floats) -> float:
         for contact in self._all:
             contact.commit()
+            contact.history_of = self
         return 0.0
 
     @override
@@ -97,6 +100,7 @@ class Contacts(Term):
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for contact in self._all:
             contact.restore(next(kept), u)
+            contact.history_of = self
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""

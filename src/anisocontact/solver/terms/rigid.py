@@ -122,6 +122,8 @@ class RigidBodies(Term):
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
+        for body in self.bodies:
+            body.check_history(self, "rigid body")
         self._load_factor = factor
 
     @override
@@ -273,6 +275,7 @@ class RigidBodies(Term):
         work = float(np.sum(0.5 * (self._accepted_outside + self._outside) * (now - before)))
         for body in self.bodies:
             body.commit()
+            body.history_of = self
         self._accepted_outside, self._accepted_of_faces = self._outside, self._of_faces
         self._accepted_load = np.array(
             [self._drives[body].load(self._load_factor) for body in self.bodies]
@@ -307,6 +310,7 @@ class RigidBodies(Term):
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
             body.go_on(values, rotation)
+            body.history_of = self
         self._accepted_outside = kept["rigid.outside"].copy()
         self._accepted_load = kept["rigid.load"].copy()
         self._accepted_of_faces = kept["rigid.faces"].copy()

@@ -1,0 +1,34 @@
+"""What has a history, which is that of one problem."""
+
+from __future__ import annotations
+
+from anisocontact.base.errors import InputError
+
+
+class OneHistory:
+    """A part of a problem that remembers its increments: no other problem can go on from them.
+
+    Attributes:
+        name: Its name.
+        history_of: What has accepted its increments; None before the first one.
+    """
+
+    name: str
+    history_of: object | None = None
+
+    def check_history(self, problem: object, kind: str) -> None:
+        """Refuse a history that another problem has made, with displacements that are not of this.
+
+        Args:
+            problem: What is to go on.
+            kind: What this is, for the message.
+
+        Raises:
+            InputError: Another one has accepted increments.
+        """
+        if self.history_of not in (None, problem):
+            raise InputError(
+                "it has the history of another problem that has been solved; make one for each "
+                "problem",
+                f"{kind} {self.name!r}",
+            )
