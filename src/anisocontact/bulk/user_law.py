@@ -127,6 +127,7 @@ def user_material(given: Any) -> Material:
         InputError: It is none of these, or fails.
 
     Example:
+        >>> import ufl
         >>> class Rubber:
         ...     young = 3.0
         ...     def energy(self, F):

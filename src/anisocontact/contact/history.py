@@ -73,26 +73,25 @@ class Slid:
         return cls(state["slip_accumulated"].copy(), state["dissipation"].copy(), touching)
 
 
-def dissipated(state: State, way: Sequence[Slid], end: State) -> Floats:
+def dissipated(state: State, way: Sequence[Slid], end: State, mean: Floats | float) -> Floats:
     """What friction has dissipated since the start, with the force that it has on the way, (n,).
 
     The law takes the slip from the accepted state at once, `D = -T . s` with the force of the end.
-    In equilibrium pressure grows with the slip, and friction with the pressure: its mean is right
-    to second order; of a law in Python whose friction does not grow with the pressure, to first
-    order. Where bodies flow the way there is taken piece by piece, by the sum of the means; while a
-    point has not slipped its force at yield is taken for that of the next state.
+    In equilibrium the force that presses grows with the slip, and friction with it: its mean is
+    right to second order; of a law in Python whose friction does not grow with the pressure, to
+    first order. Where bodies flow the way there is taken piece by piece, by the sum of the means;
+    while a point has not slipped its force at yield is taken for that of the next state.
 
     Args:
         state: The accepted state.
         way: What slip had come to on the way of a flow, empty in equilibrium.
         end: The state where the way ends.
+        mean: Mean of what presses in both states over that of the end, see `mean_pressures`; in
+            equilibrium.
     """
     if not way:
-        pressure = np.where(end["pressure"] > 0.0, end["pressure"], np.inf)
-        share = 0.5 * (1.0 + state["pressure"] / pressure)
-        return np.asarray(
-            state["dissipation"] + share * (end["dissipation"] - state["dissipation"])
-        )
+        gained = end["dissipation"] - state["dissipation"]
+        return np.asarray(state["dissipation"] + mean * gained)
     before, total = Slid.of(state), state["dissipation"].copy()
     slid, force = np.zeros_like(total), np.zeros_like(total)
     for now in (*way, Slid.of(end)):
@@ -102,3 +101,9 @@ def dissipated(state: State, way: Sequence[Slid], end: State) -> Floats:
         total += np.where(now.touching, 0.5 * (first + at_yield) * (length - slid), 0.0)
         slid, force = length, at_yield
     return np.asarray(total)
+
+
+def mean_pressures(state: State, end: State) -> Floats:
+    """Mean of the pressures of two states over that of the end, (n,); 1/2 where it has none."""
+    pressure = np.where(end["pressure"] > 0.0, end["pressure"], np.inf)
+    return np.asarray(0.5 * (1.0 + state["pressure"] / pressure))

@@ -14,13 +14,13 @@ from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
-from anisocontact.contact.history import Slid, Snapshot, dissipated
+from anisocontact.contact.history import Slid, Snapshot, dissipated, mean_pressures
 from anisocontact.contact.initial import check_start
 from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.trials import Trials
-from anisocontact.interface import FAILURE, Response, State
+from anisocontact.interface import FAILURE, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
@@ -273,8 +273,9 @@ class Pass:
         self.ran_off = self.master.commit(self.accepted, self.state, self._trial)
         if self._trial is not None:
             self._gained = self._trial.response.traction - self.last.traction
-            self.accepted = self._trial
-            self.last.state["dissipation"] = self._rubbed(self.last.state)
+            before, self.accepted = self.accepted, self._trial
+            end, mean = self.last.state, self._mean_force(before, self.accepted)
+            end["dissipation"] = dissipated(self.state, self._way, end, mean)
             for i, name in enumerate(_DISSIPATED.values()):
                 self._dissipated[:, i] += self.areas * (self.last.state[name] - self.state[name])
             self.state = self.last.state
@@ -317,19 +318,26 @@ class Pass:
         """What the laws store and dissipate from the accepted state to the trial, of this rank.
 
         Returns:
-            Energy; what friction dissipates is along the way, see `dissipated`.
+            Energy; friction has the mean of the pressures of both ends at each point.
         """
         now, before = self.current, self.accepted
         state, areas = now.response.state, now.areas
-        gained = self._rubbed(state) - self.state["dissipation"]
+        mean = mean_pressures(self.state, state)
+        gained = dissipated(self.state, self._way, state, mean) - self.state["dissipation"]
         gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
         stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
         held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]
         return float(areas @ gained + sum(held))
 
-    def _rubbed(self, end: State) -> Floats:
-        """What friction has dissipated from the start to a state that ends an increment, (n,)."""
-        return dissipated(self.state, self._way, end)
+    def _mean_force(self, before: Snapshot, end: Snapshot) -> float:
+        """Mean of the forces that press in two states over that of the end, over all ranks.
+
+        That of the contact, not of each point: as it moves on, points that it leaves have no slip
+        in the end to be counted with half of their pressure, as those are that it comes to.
+        """
+        pressed = [one.areas @ one.response.state["pressure"] for one in (before, end)]
+        first, last = self._comm.allreduce(np.array(pressed)).tolist()
+        return 0.5 * (1.0 + first / last) if last > 0.0 else 1.0
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
