@@ -26,8 +26,9 @@ from anisocontact.solver.system.problem import Problem
 LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
 GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
-#: Kinds that explain a failure by themselves.
-GRAVE = GRAVITY[:3]
+#: Kinds that explain a failure by themselves; cells that are inverted do in an equilibrium that is
+#: refused, and where corrections go too far they do not.
+GRAVE = GRAVITY[:2]
 #: Kinds that shares of corrections do not help against.
 PLAIN = {"law", "inverted"}
 
