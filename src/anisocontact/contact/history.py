@@ -38,7 +38,7 @@ class Snapshot:
         Force, and force times radian^3; points that are open have no force.
         """
         size = self.areas * np.linalg.norm(self.response.traction_t, axis=1)
-        return np.array([size.sum(), size @ self.response.state["turn"] ** 3])
+        return np.array([size.sum(), np.sum(size * self.response.state["turn"] ** 3)])
 
     def wrench(self, about: Floats, traction: Floats | None = None) -> Floats:
         """Force and moment about a point on the slave over the points of this rank, (6,).

@@ -335,7 +335,9 @@ class Pass:
         That of the contact, not of each point: as it moves on, points that it leaves have no slip
         in the end to be counted with half of their pressure, as those are that it comes to.
         """
-        pressed = [one.areas @ one.response.state["pressure"] for one in (before, end)]
+        # before the first increment the state has none, whatever rounding makes of a gap of zero
+        there = (before.areas, self.state), (end.areas, end.response.state)
+        pressed = [np.sum(areas * state["pressure"]) for areas, state in there]
         first, last = self._comm.allreduce(np.array(pressed)).tolist()
         return 0.5 * (1.0 + first / last) if last > 0.0 else 1.0
 
