@@ -209,6 +209,7 @@ class ContactProblem(AssembledSystem):
             contacts.take_way(way)
             again = self.newton.solve(x)
             result = replace(again, iterations=result.iterations + again.iterations)
+        start.destroy()
         return result
 
     @typed
