@@ -18,8 +18,8 @@ from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
 from anisocontact.solver.stepping.acceptance import INVERTED
 from anisocontact.solver.stepping.attempts import _reason
-from anisocontact.solver.stepping.culprits import NAMED
-from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.convergence_diagnostics import NAMED
+from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.system.culprit import Culprit
@@ -56,36 +56,36 @@ def test_wrong_limits_are_one_line(values, line):
 def test_every_end_is_met_exactly(outcomes, largest):
     """Whatever fails, parts add up to whole increments and none is below the smallest."""
     limits = Limits(smallest=1e-3, largest=largest)
-    pace = Pace(limits, limits.largest)
+    control = IncrementControl(limits, limits.largest)
     reached = 0.0
     for good in outcomes:
-        before = pace.increment
+        before = control.increment
         if good:
-            assert pace.done < pace.end <= 1.0
+            assert control.done < control.end <= 1.0
             # parts are of equal size up to the end: at least half of what was asked for
-            assert 0.5 * limits.smallest < pace.part <= largest * (1.0 + 1e-9)
-            end = pace.end
-            pace.advance(3)
-            assert (pace.increment == before + 1) == (end == 1.0)
-        elif not pace.cut():
-            assert pace.part <= limits.smallest or pace.cuts == limits.cuts
-        now = pace.increment + pace.done
+            assert 0.5 * limits.smallest < control.part <= largest * (1.0 + 1e-9)
+            end = control.end
+            control.advance(3)
+            assert (control.increment == before + 1) == (end == 1.0)
+        elif not control.cut():
+            assert control.part <= limits.smallest or control.cuts == limits.cuts
+        now = control.increment + control.done
         assert now >= reached
         reached = now
 
 
 def test_parts_grow_back_after_a_cut():
     limits = Limits()
-    pace = Pace(limits, limits.largest)
-    assert pace.cut()
-    assert pace.cut()
+    control = IncrementControl(limits, limits.largest)
+    assert control.cut()
+    assert control.cut()
     sizes = []
-    while pace.increment == 1:
-        sizes.append(pace.part)
-        pace.advance(3)
+    while control.increment == 1:
+        sizes.append(control.part)
+        control.advance(3)
     assert sizes[:3] == [1 / 16, 1 / 16, 1 / 8]
     assert sum(sizes) == 1.0
-    assert pace.part == 1.0
+    assert control.part == 1.0
 
 
 def test_an_increment_that_fails_is_solved_in_parts(fe):

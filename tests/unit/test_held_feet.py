@@ -16,7 +16,7 @@ from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver.stepping.acceptance import held_points_stray
-from anisocontact.solver.stepping.culprits import find_culprits
+from anisocontact.solver.stepping.convergence_diagnostics import find_culprits
 from anisocontact.solver.stepping.status_watch import StatusWatch
 
 #: Slope of both facets of the base, which fall towards their common side at x = 1.

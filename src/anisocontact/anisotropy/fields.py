@@ -10,8 +10,8 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
@@ -23,7 +23,7 @@ Directions = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 BY_COORDINATES = frozenset({"coordinate-lines", "tabulated-grid"})
 
 
-class DirectionField(Remade):
+class DirectionField(CopiedByArguments):
     """A direction field; make one with `make_directions`, `from_callable`, ...
 
     Args:

@@ -10,8 +10,8 @@ import numpy as np
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Codes, Flags, Floats, Locals
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
@@ -29,7 +29,7 @@ _KEPT = 4
 
 
 @typed
-class AdhesionAndFriction(Remade):
+class AdhesionAndFriction(CopiedByArguments):
     """The tangential law of the core.
 
     Args:
@@ -138,7 +138,7 @@ class AdhesionAndFriction(Remade):
 
 
 @typed
-class ContactLaw(Remade):
+class ContactLaw(CopiedByArguments):
     """The law of a contact, on an analytic, a moving or a meshed master.
 
     Args:

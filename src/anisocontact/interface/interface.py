@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw
 from anisocontact.interface.python_law import PythonLaw
@@ -24,7 +24,7 @@ POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 
 
 
 @typed
-class Interface(Remade):
+class Interface(CopiedByArguments):
     """A surface with the laws of its contact.
 
     Args:

@@ -17,8 +17,8 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
 from anisocontact.base.array_types import Floats
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface.law_in_series import LawInSeries
 from anisocontact.interface.series import SeriesHistory
@@ -44,7 +44,7 @@ type Update = Callable[[npt.NDArray[np.uint8], Floats | None], dict[str, Any]]
 
 
 @typed
-class PythonLaw(Remade):
+class PythonLaw(CopiedByArguments):
     """The tangential law of a contact, written in Python.
 
     The frame of the law has its first axis along the first axis of `directions`, carried by the

@@ -16,9 +16,9 @@ from anisocontact.anisotropy import (
 )
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
@@ -77,7 +77,7 @@ def _side(given: str, field: str) -> str:
 
 
 @typed
-class Adhesion(Remade):
+class Adhesion(CopiedByArguments):
     """Tangential law inside the yield ellipse.
 
     Args:
@@ -129,7 +129,7 @@ class Adhesion(Remade):
 
 
 @typed
-class Friction(Remade):
+class Friction(CopiedByArguments):
     """Yield ellipse and sliding rule.
 
     Args:

@@ -11,8 +11,8 @@ from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Codes, Floats
 from anisocontact.base.arrays import points
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
@@ -83,7 +83,7 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-class Surface(Remade):
+class Surface(CopiedByArguments):
     """An analytic surface; make one with `make_surface`.
 
     Args:

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.base.arrays import points
+from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
-from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.analytic import Jet, default_threads
 from anisocontact.surfaces.facet_blocks import FacetBlocks, finite
@@ -115,7 +115,7 @@ class FacetSets:
 
 
 @typed
-class FacetSurface(Remade):
+class FacetSurface(CopiedByArguments):
     """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.
 
     The mesh has to conform: facets are neighbours where they name the same points.

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.stepping.culprits import inverted_cells, strayed
+from anisocontact.solver.stepping.convergence_diagnostics import inverted_cells, strayed
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.rotations import CURE, WARNED

@@ -11,10 +11,10 @@ from anisocontact.contact.multiplier_schemes import IN_CYCLES, PENALTIES, SOFTER
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import INVERTED, refused
 from anisocontact.solver.stepping.continuation import Continuation
-from anisocontact.solver.stepping.culprits import failed_point, find_culprits
+from anisocontact.solver.stepping.convergence_diagnostics import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
+from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import Overload
-from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.strategies.newton import NewtonResult
@@ -139,7 +139,7 @@ class Attempts:
         first: Vec,
         last: Vec,
         ratio: float,
-        pace: Pace,
+        control: IncrementControl,
         overloads: Sequence[Overload] = (),
     ) -> Outcome:
         """Solve and commit, or roll back.
@@ -148,13 +148,13 @@ class Attempts:
             first: Extrapolated state.
             last: Accepted state.
             ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
-            pace: How large the part is: in a small one, that is not likely to get smaller, more is
+            control: Size of the part: in a small one, that is not likely to get smaller, more is
                 tried, in a tiny one everything, whatever failed.
             overloads: Loads that friction does not hold at the end of the part: everything is
                 tried, and what fails is final where nothing else can come to hold the bodies.
 
         Returns:
-            Whether one converged, and what kept the others from it.
+            What converged, or why nothing did, and where.
         """
         spent, self._failed, self._ahead, failed = 0, None, None, ""
         overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
@@ -163,11 +163,11 @@ class Attempts:
         searching, full = _Way(first, ratio, full_steps=False), _Way(last)
         both = self._apart(searching, full)
         relaxed = [replace(way, multipliers=PENALTIES) for way in both]
-        if not (pace.may_relax and PENALTIES in self._problem.contact_term.ways):
+        if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
             relaxed = []
-        ways = self._ways(searching, full, pace.softer)
+        ways = self._ways(searching, full, control.softer)
         if relaxed:
-            ways = [*(ways[:1] if pace.relaxed else ways), *relaxed]
+            ways = [*(ways[:1] if control.relaxed else ways), *relaxed]
         for way in ways:
             result, culprits = self._attempt(way)
             spent += result.iterations
@@ -183,8 +183,8 @@ class Attempts:
                 failed, found = result.reason, _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
-            if way is ways[-1] and not self._final and (alternates or pace.tiny or overloaded):
-                ways += self._last_resorts(way, pace.small or overloaded)
+            if way is ways[-1] and not self._final and (alternates or control.tiny or overloaded):
+                ways += self._last_resorts(way, control.small or overloaded)
         reason = _reason(failed, found, self._problem.contacts)
         result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()

@@ -8,7 +8,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.rigid import RigidBody
-from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Persistent
 
@@ -74,17 +74,17 @@ class Predictor:
         self.travels = any(way > TRAVELS for way in ways)
         self.begin()
 
-    def state(self, last: Vec, before: Vec | None, pace: Pace) -> tuple[Vec, float]:
+    def state(self, last: Vec, before: Vec | None, control: IncrementControl) -> tuple[Vec, float]:
         """Where to start, and by what part of the last change multipliers go on from there.
 
         Args:
             last: Accepted state.
             before: The accepted state before it; None where there is none to extrapolate from.
-            pace: Sizes of the next part and of the last one.
+            control: Sizes of the next part and of the last one.
         """
-        ratio = 0.0 if before is None else pace.part / pace.last
-        if self._ahead is not None and pace.part <= self._left + _ROUNDING:
-            share = pace.part / self._left
+        ratio = 0.0 if before is None else control.part / control.last
+        if self._ahead is not None and control.part <= self._left + _ROUNDING:
+            share = control.part / self._left
             return (1.0 - share) * last + share * self._ahead, ratio
         if before is None:
             return last, ratio

@@ -22,7 +22,7 @@ from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.contact.multiplier_schemes import IN_CYCLES, SOFTER
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import own_unknowns
-from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
 from anisocontact.solver.stepping.script_state import ScriptState
 from anisocontact.solver.strategies.database import Database, OptionValue
@@ -245,18 +245,20 @@ class ContactProblem(AssembledSystem):
         """
         if increments < 1:
             raise InputError(f"{increments!r} given, at least 1 needed", "increments")
-        pace, total = Pace(limits, limits.largest), 0
-        while pace.increment <= increments:
-            before, share = ((pace.increment - 1 + s) / increments for s in (pace.done, pace.end))
+        control, total = IncrementControl(limits, limits.largest), 0
+        while control.increment <= increments:
+            before, share = (
+                (control.increment - 1 + s) / increments for s in (control.done, control.end)
+            )
             prescribe(share)
             try:
                 iterations = self.solve(duration * (share - before))
             except RuntimeError:
-                if pace.cut():
+                if control.cut():
                     continue
                 prescribe(before)
                 raise
-            pace.advance(iterations)
+            control.advance(iterations)
             total += iterations
             if callback is not None and callback(share, iterations):
                 break

@@ -17,10 +17,11 @@ from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
-from anisocontact.solver.stepping.culprits import NAMED
+from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
+from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import (
     Overload,
     exhausted,
@@ -28,7 +29,6 @@ from anisocontact.solver.stepping.overload import (
     reason_of,
     too_much_load,
 )
-from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
@@ -51,7 +51,7 @@ class RunPosition:
     Attributes:
         step: Number of the step, from 0.
         time: Time at which it began.
-        pace: Increments and parts of it.
+        control: Increments and parts of it.
         begun: Whether the problem has the loads of the step.
         before: State before the last accepted part of this step; None at its beginning.
         spent: Newton iterations since the last accepted part.
@@ -62,7 +62,7 @@ class RunPosition:
 
     step: int
     time: float
-    pace: Pace
+    control: IncrementControl
     begun: bool = False
     before: Vec | None = None
     spent: int = 0
@@ -181,8 +181,8 @@ class Solver:
         kept = self.problem.persistent()
         kept.common["problem"] = as_array(self._made_of)
         kept.common["energy_watch"] = self._energy.persistent()
-        place, pace = self.place, self.place.pace
-        numbers = asdict(pace)
+        place, control = self.place, self.place.control
+        numbers = asdict(control)
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
         numbers["kink"] = self._turns.kink
@@ -224,8 +224,8 @@ class Solver:
         self._predictor.restore(kept, states)
         if "before" in kept.nodal and states:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
-        pace = Pace(self.limits, **numbers)
-        self.place = RunPosition(step, time, pace, begun, before, stopped=stopped)
+        control = IncrementControl(self.limits, **numbers)
+        self.place = RunPosition(step, time, control, begun, before, stopped=stopped)
 
     def _all(self, note: Callable[[str], None], warn: Callable[[str], None]) -> Generator[Accepted]:
         """Step by step, with a solver that is closed however it ends."""
@@ -250,7 +250,7 @@ class Solver:
                 newton.close()
 
     def _beginning(self, step: int, time: float) -> RunPosition:
-        return RunPosition(step, time, Pace(self.limits, self.limits.largest))
+        return RunPosition(step, time, IncrementControl(self.limits, self.limits.largest))
 
     def _go_on(self, step: Step) -> None:
         """Go to the step after one that is done, or that an event has ended."""
@@ -262,7 +262,7 @@ class Solver:
         self.place.stopped = stopped
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
-        place, pace = self.place, self.place.pace
+        place, control = self.place, self.place.control
         if not place.begun:
             self.problem.begin(step)
             self._turns.begin()
@@ -271,17 +271,17 @@ class Solver:
         prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
         if ambiguous := half_turns(prescribed, self.limits.smallest):
-            raise StoppedError(step.name, pace.increment, ambiguous)
-        pace.bound(largest)
+            raise StoppedError(step.name, control.increment, ambiguous)
+        control.bound(largest)
         place.events = events = EventWatch(self.problem, step, self.limits.smallest)
         attempts.events = events
         events.restore(self._waiting)
         self._waiting = {}
-        while pace.increment <= step.increments:
+        while control.increment <= step.increments:
             last = self.problem.accepted()
-            pace.goal = events.goal(pace.done)
-            events.begin(pace.part, pace.end)
-            slides, end = events.slides(), _whole(pace.increment, pace.end) / step.increments
+            control.goal = events.goal(control.done)
+            events.begin(control.part, control.end)
+            slides, end = events.slides(), _whole(control.increment, control.end) / step.increments
             now = self._reached(step)
             overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
             if overloaded and events.overload():
@@ -289,19 +289,19 @@ class Solver:
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
             if outcome.result.reason:
-                self._predictor.refuse(outcome.ahead, pace.part)
+                self._predictor.refuse(outcome.ahead, control.part)
                 if not events.objects:
                     self._cut(step, outcome)
                 continue
-            increment, done, part = pace.increment, pace.end, pace.part
+            increment, done, part = control.increment, control.end, control.part
             events.accept(done == 1.0)
             self._predictor.accept(part)
             accepted = self._accepted(step, increment, done, outcome, events)
-            pace.advance(outcome.iterations, outcome.relaxed, outcome.softer)
+            control.advance(outcome.iterations, outcome.relaxed, outcome.softer)
             if events.happened:
                 place.stopped[place.step] = _whole(increment, done) / step.increments
-                pace.increment = step.increments + 1
-            pace.bound(min(self._turns.allowed(part), largest))
+                control.increment = step.increments + 1
+            control.bound(min(self._turns.allowed(part), largest))
             loads = not (self.problem.stabilisation.landed or self._energy.pushed_apart)
             place.before = last if loads else None
             place.spent = 0
@@ -310,37 +310,37 @@ class Solver:
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
         """Solve the next part from the state that is predicted for its end."""
-        pace = self.place.pace
+        control = self.place.control
         dt = step.duration / step.increments
-        whole = _whole(pace.increment, pace.end)
-        part = dt if pace.part == 1.0 else pace.part * dt
+        whole = _whole(control.increment, control.end)
+        part = dt if control.part == 1.0 else control.part * dt
         self.problem.set_load_factor(whole / step.increments, part)
-        first, ratio = self._predictor.state(last, self.place.before, pace)
-        self._turns.permitted = pace.cuttable
+        first, ratio = self._predictor.state(last, self.place.before, control)
+        self._turns.permitted = control.cuttable
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
         end, now = whole / step.increments, self._reached(step)
-        overloads = past_holding(self.problem, end, now, pace.cuts)
+        overloads = past_holding(self.problem, end, now, control.cuts)
         with self._options:
-            return attempts.solve(first, last, ratio, pace, overloads)
+            return attempts.solve(first, last, ratio, control, overloads)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""
-        pace, result = self.place.pace, outcome.result
-        tried, cuts = pace.part, pace.cuts
+        control, result = self.place.control, outcome.result
+        tried, cuts = control.part, control.cuts
         if result.culprits:
             self.place.lost = outcome
-        if outcome.final or not pace.cut():
+        if outcome.final or not control.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         more = self._hint(step, cuts)
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
                     step=step.name,
-                    increment=pace.increment,
-                    time=self._time(step, pace.increment, pace.done),
+                    increment=control.increment,
+                    time=self._time(step, control.increment, control.done),
                     size=tried,
-                    next_size=pace.part,
+                    next_size=control.part,
                     reason="; ".join(text for text in (result.reason, more) if text),
                     iterations=result.iterations,
                     count=len(outcome.culprits),
@@ -357,14 +357,14 @@ class Solver:
 
     def _overloads(self, step: Step) -> list[Overload]:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
-        end, now = self.place.pace.increment / step.increments, self._reached(step)
+        end, now = self.place.control.increment / step.increments, self._reached(step)
         found = too_much_load(self.problem, end, now)
         return found or exhausted(self.problem, now)
 
     def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
         """Say why an increment has no solution."""
         outcome = self.place.lost or outcome
-        increment, culprits = self.place.pace.increment, outcome.culprits
+        increment, culprits = self.place.control.increment, outcome.culprits
         found = self._overloads(step)
         reason = reason_of(outcome.result.reason, outcome.grave, found)
         if outcome.result.reason not in reason:
@@ -383,12 +383,12 @@ class Solver:
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}
             step = self.steps[self.place.step].name
-            increment = self.place.pace.increment
+            increment = self.place.control.increment
             self._on_iteration(Progress(step, increment, iteration, residual, counts))
 
     def _reached(self, step: Step) -> float:
         """Fraction of the step of the accepted state."""
-        return _whole(self.place.pace.increment, self.place.pace.done) / step.increments
+        return _whole(self.place.control.increment, self.place.control.done) / step.increments
 
     def _time(self, step: Step, increment: int, done: float) -> float:
         return self.place.time + _whole(increment, done) * (step.duration / step.increments)

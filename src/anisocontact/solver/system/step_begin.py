@@ -10,7 +10,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.material_warnings import doubtful_materials
 from anisocontact.contact.far_nodes import with_ghosts
-from anisocontact.mesh.pieces import unjoined_bodies
+from anisocontact.mesh.connected_components import unjoined_bodies
 from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, along_axes

@@ -13,8 +13,8 @@ from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import Contact
 from anisocontact.mesh import Idealisation, Model
+from anisocontact.mesh.connected_components import component_of_nodes
 from anisocontact.mesh.idealisation import SOLID
-from anisocontact.mesh.pieces import piece_of_nodes
 
 #: Share of the largest eigenvalue below which a motion meets no support.
 FREE = 1e-9
@@ -109,7 +109,7 @@ def bodies(model: Model, links: Iterable[Sequence[str]] = ()) -> list[ConnectedB
         links: Facet groups whose nodes move together beside these, a few names each.
     """
     space, comm, ideal = model.space, model.mesh.comm, model.idealisation
-    label = piece_of_nodes(space)
+    label = component_of_nodes(space)
 
     def pieces(nodes: Ints | Locals) -> Ints:
         return np.unique(np.concatenate(comm.allgather(np.unique(label[nodes]))))

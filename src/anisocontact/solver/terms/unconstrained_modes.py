@@ -9,8 +9,8 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI, Mat
+from anisocontact.mesh.connected_components import component_of_nodes
 from anisocontact.mesh.node_unknowns import NodeUnknowns
-from anisocontact.mesh.pieces import piece_of_nodes
 from anisocontact.solver.terms.free_modes import named
 
 #: Force of a rigid motion over that of moving single nodes, root mean square, that is rounding.
@@ -41,7 +41,7 @@ def parts(space: Any) -> list[MeshPart]:
     comm, index_map = space.mesh.comm, space.dofmap.index_map
     owned = index_map.size_local
     x = np.asarray(space.tabulate_dof_coordinates())
-    label = piece_of_nodes(space)
+    label = component_of_nodes(space)
     found = []
     for one in range(comm.allreduce(int(label.max(initial=-1)), MPI.MAX) + 1):
         nodes = np.flatnonzero(label == one)

@@ -20,7 +20,7 @@ HARD = 15
 
 
 @dataclass
-class Pace:
+class IncrementControl:
     """Goes through the increments of a step in parts; all sizes are shares of an increment.
 
     Args:
@@ -39,11 +39,11 @@ class Pace:
 
     Example:
         >>> limits = Limits()
-        >>> pace = Pace(limits, limits.largest)
-        >>> pace.cut(), pace.end
+        >>> control = IncrementControl(limits, limits.largest)
+        >>> control.cut(), control.end
         (True, 0.25)
-        >>> pace.advance(iterations=3)
-        >>> pace.done, pace.end
+        >>> control.advance(iterations=3)
+        >>> control.done, control.end
         (0.25, 0.5)
     """
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any, Self
 
 
-class Remade:
+class CopiedByArguments:
     """What is copied and pickled by the arguments it was made of, and has no other state.
 
     Example:
         >>> import copy
-        >>> class Half(Remade):
+        >>> class Half(CopiedByArguments):
         ...     def __init__(self, of: float) -> None:
         ...         self.value = of / 2
         >>> copy.deepcopy(Half(of=3.0)).value
@@ -27,7 +27,7 @@ class Remade:
         return new
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _remake, (type(self), *self._made)
+        return _made_anew, (type(self), *self._made)
 
     def with_parts(self, instead: Mapping[int, Any]) -> Self:
         """Made anew with other parts; as it is where it has none of them.
@@ -45,8 +45,12 @@ class Remade:
 
 def _replaced(part: Any, instead: Mapping[int, Any]) -> Any:
     found = instead.get(id(part), part)
-    return found.with_parts(instead) if isinstance(found, Remade) and found is part else found
+    return (
+        found.with_parts(instead)
+        if isinstance(found, CopiedByArguments) and found is part
+        else found
+    )
 
 
-def _remake(kind: type[Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+def _made_anew(kind: type[Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
     return kind(*args, **kwargs)

@@ -14,9 +14,9 @@ from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box, make_shape
 from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.connected_components import unjoined_bodies
 from anisocontact.mesh.described import SAME
 from anisocontact.mesh.merge import merge
-from anisocontact.mesh.pieces import unjoined_bodies
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Problem, Solver, Step
 from anisocontact.solver.terms.free_modes import bodies

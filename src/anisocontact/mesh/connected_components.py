@@ -1,4 +1,4 @@
-"""Pieces of a mesh that share no nodes."""
+"""Connected components of a mesh: parts of it that share no nodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from anisocontact.mesh.described import SAME
 from anisocontact.mesh.model import Model
 
 
-def piece_of_nodes(space: Any) -> Ints:
+def component_of_nodes(space: Any) -> Ints:
     """Number of the connected part of the mesh each local node is in, the same on all ranks.
 
     Args:
@@ -47,7 +47,7 @@ def unjoined_bodies(model: Model, apart: Sequence[Locals] = ()) -> list[str]:
         apart: Local nodes that are meant to lie on others, as those in contact.
     """
     space, comm = model.space, model.mesh.comm
-    label, owned = piece_of_nodes(space), space.dofmap.index_map.size_local
+    label, owned = component_of_nodes(space), space.dofmap.index_map.size_local
     x = np.asarray(space.tabulate_dof_coordinates())
     meant = np.zeros(len(x), dtype=np.bool_)
     meant[np.concatenate([np.zeros(0, dtype=np.int32), *apart])] = True
