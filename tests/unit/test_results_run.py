@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,6 +27,7 @@ from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
 from anisocontact.results.deformed import SHOWN, magnification
+from anisocontact.results.output_options import Labels
 from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.run_data import RunData
 from anisocontact.results.report.shared_work import attempts
@@ -45,10 +47,8 @@ def run_case(path, folder, pictures=True):
         folder,
         built.problem,
         built.steps,
-        masters=[contact.master for contact in file.case.contact],
-        title=file.case.title,
-        every=file.case.output.every,
-        pictures=pictures,
+        replace(file.case.output.options(), pictures=pictures),
+        Labels(file.case.title, [contact.master for contact in file.case.contact]),
         case=path.read_text(),
     )
     accepted = []

@@ -14,6 +14,7 @@ from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 
 if TYPE_CHECKING:
+    from anisocontact.results.output_options import OutputOptions
     from anisocontact.results.probes import Probe
     from anisocontact.results.resultants import Resultant
 
@@ -137,6 +138,22 @@ class Output(Section):
         default_factory=dict,
         description="forces and moments in `summary.json` and `history.csv`, by name",
     )
+
+    def options(self) -> OutputOptions:
+        """The same for the writer."""
+        from anisocontact.results.output_options import OutputOptions
+
+        return OutputOptions(
+            every=self.every,
+            steps=self.steps,
+            times=self.times,
+            quantities=self.quantities,
+            probes={name: one.probe() for name, one in self.probe.items()},
+            resultants={name: one.resultant() for name, one in self.resultant.items()},
+            pictures=self.pictures,
+            vtkhdf=self.vtkhdf,
+            checkpoint_every=self.checkpoint_every,
+        )
 
 
 def check_output(output: Output, steps: list[str]) -> Iterator[InputError]:

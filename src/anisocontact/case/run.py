@@ -15,6 +15,7 @@ from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
+from anisocontact.results.output_options import Labels
 from anisocontact.results.report_process import Reporter, report_here
 from anisocontact.results.writer import Writer
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
@@ -165,24 +166,19 @@ def _writer(
     built: Built, folder: str | Path, text: str, checkpoint: Stored | None, reporter: Reporter
 ) -> Writer:
     case = built.file.case
+    labels = Labels(
+        title=case.title or built.file.name,
+        masters=[contact.master for contact in case.contact],
+        units=case.units.labels(),
+    )
     return Writer(
         folder,
         built.problem,
         built.steps,
-        masters=[contact.master for contact in case.contact],
-        title=case.title or built.file.name,
-        every=case.output.every,
-        only=case.output.steps,
-        times=case.output.times,
-        quantities=case.output.quantities,
-        probes={name: one.probe() for name, one in case.output.probe.items()},
-        resultants={name: one.resultant() for name, one in case.output.resultant.items()},
-        pictures=case.output.pictures,
-        reporter=reporter,
-        vtkhdf=case.output.vtkhdf,
-        units=case.units.labels(),
-        checkpoint_every=case.output.checkpoint_every,
+        case.output.options(),
+        labels,
         case=text,
+        reporter=reporter,
         resumed=checkpoint.facts["writer"] if checkpoint else None,
     )
 

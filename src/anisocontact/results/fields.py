@@ -10,6 +10,7 @@ from typing import Any
 from anisocontact.results.collection import Collection
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.files import Disk
+from anisocontact.results.output_options import OutputOptions
 from anisocontact.solver import Accepted, Step
 
 #: Sorts of fields, and the suffix of their files.
@@ -24,30 +25,24 @@ class FieldFiles:
     Args:
         folder: Where the files go.
         disk: Where failures go.
-        comm: Communicator of the run.
         steps: Steps of the run.
         now: What is in the files now, by sort of fields, see `SUFFIXES`.
-        every: Fields are written every so many increments, and at the end of each step.
-        only: Names of the steps of which they are written; all if not given.
-        times: Times from which on the next increment is written as well.
+        options: When they are due.
     """
 
     def __init__(
         self,
         folder: Path,
         disk: Disk,
-        comm: Any,
         steps: Sequence[Step],
         now: Mapping[str, Callable[[], DataSet | None]],
-        *,
-        every: int,
-        only: Sequence[str],
-        times: Sequence[float],
+        options: OutputOptions,
     ) -> None:
         self._disk, self._steps, self._now = disk, steps, dict(now)
-        self._every, self._only, self._times = every, list(only), list(times)
+        self._options = options
         self._files = {
-            name: Collection(folder / f"{name}.pvd", SUFFIXES[name], comm) for name in self._now
+            name: Collection(folder / f"{name}.pvd", SUFFIXES[name], disk.comm)
+            for name in self._now
         }
         self._increments = 0
         self._written = 0.0
@@ -83,11 +78,12 @@ class FieldFiles:
             self.write(at)
 
     def _is_due(self, accepted: Accepted, before: float) -> bool:
-        if any(before < time <= accepted.time for time in self._times):
+        options, step = self._options, self._steps[accepted.step_index]
+        if any(before < time <= accepted.time for time in options.times):
             return True
-        step = self._steps[accepted.step_index]
-        if accepted.event:
-            return not self._only or step.name in self._only
-        if accepted.done < 1.0 or (self._only and step.name not in self._only):
+        if options.steps and step.name not in options.steps:
             return False
-        return accepted.increment == step.increments or self._increments % self._every == 0
+        if accepted.event:
+            return True
+        last = accepted.increment == step.increments
+        return accepted.done == 1.0 and (last or self._increments % options.every == 0)

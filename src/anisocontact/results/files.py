@@ -58,12 +58,12 @@ class Disk:
     """
 
     def __init__(self, comm: Any) -> None:
-        self._comm = comm
+        self.comm = comm
         self._failure = ""
 
     def write(self, action: Callable[[], object]) -> None:
         """Do something with files on the first rank; nothing once something has failed."""
-        if self._comm.rank == 0:
+        if self.comm.rank == 0:
             self.write_each(action)
 
     def write_each(self, action: Callable[[], object]) -> None:
@@ -82,7 +82,7 @@ class Disk:
         Raises:
             WriteError: A disk is full, or a folder gone or protected.
         """
-        self._failure = next(filter(None, self._comm.allgather(self._failure)), "")
+        self._failure = next(filter(None, self.comm.allgather(self._failure)), "")
         if self._failure:
             raise WriteError(self._failure)
 

@@ -10,7 +10,6 @@ from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from anisocontact import __version__
@@ -23,11 +22,11 @@ from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
 from anisocontact.results.no_energy import energies_by_name
+from anisocontact.results.output_options import Labels, OutputOptions
 from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
 from anisocontact.results.report_process import Reporter, report_here
-from anisocontact.results.resultants import Resultant
 from anisocontact.results.snapshot import Observer, exact_laws, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.vtkhdf import write_vtkhdf
@@ -47,20 +46,10 @@ class Writer:
         folder: Where; what an earlier run left there is removed.
         problem: The problem, not yet solved.
         steps: Its steps.
-        masters: Name of the master of each contact; the name of the contact if not given.
-        title: Heading of the report.
-        every: Fields are written every so many increments, and at the end of each step.
-        only: Names of the steps of which they are written; all if not given.
-        times: Times from which on the next increment is written as well.
-        quantities: Names of the arrays to write for ParaView; all if not given.
-        probes: Places at which values are written after each increment, by name.
-        resultants: Further forces and moments, by name.
-        pictures: Whether the report with its pictures is made at the end.
-        reporter: Makes it.
-        vtkhdf: Whether all states are also written as one file of each sort at the end.
-        units: What numbers are in, by dimension: labels of the report.
-        checkpoint_every: Wall-clock seconds between two checkpoints; 0: one after each increment.
+        options: What is written, and when.
+        labels: What the run and its parts are called.
         case: Text of the case file, kept beside the results.
+        reporter: Makes the report at the end.
         resumed: What `state` gave: the folder is that of a run which goes on.
 
     Raises:
@@ -76,43 +65,31 @@ class Writer:
         folder: str | Path,
         problem: Problem,
         steps: Sequence[Step],
+        options: OutputOptions | None = None,
+        labels: Labels | None = None,
         *,
-        masters: Sequence[str] = (),
-        title: str = "",
-        every: int = 1,
-        only: Sequence[str] = (),
-        times: Sequence[float] = (),
-        quantities: Sequence[str] = (),
-        probes: Mapping[str, Probe] = MappingProxyType({}),
-        resultants: Mapping[str, Resultant] = MappingProxyType({}),
-        pictures: bool = True,
-        reporter: Reporter = report_here,
-        vtkhdf: bool = False,
-        units: Mapping[str, str] = MappingProxyType({}),
-        checkpoint_every: float = 0.0,
         case: str = "",
+        reporter: Reporter = report_here,
         resumed: Mapping[str, Any] | None = None,
     ) -> None:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._pictures, self._reporter, self._vtkhdf = pictures, reporter, vtkhdf
+        self._options = options = options or OutputOptions()
+        self._reporter, labels = reporter, labels or Labels()
         self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
-        self._checkpoints = Checkpoints(self.folder, problem.model, checkpoint_every)
+        self._checkpoints = Checkpoints(self.folder, problem.model, options.checkpoint_every)
         self._disk.write(lambda: self._open(case, resumed is not None))
-        self._observer = Observer(problem, self._steps, resultants)
-        self._constants = _constants(problem, masters or [c.name for c in problem.contacts])
+        self._observer = Observer(problem, self._steps, options.resultants)
+        self._constants = _constants(problem, labels.masters or [c.name for c in problem.contacts])
         self._history = HistoryTable(self.folder / "history.csv")
-        comm = problem.model.mesh.comm
-        self._bodies = BodyGrid(problem, quantities)
-        self._probes = self._probe_tables(probes)
-        now = self._now(quantities)
-        self._fields = FieldFiles(
-            self.folder, self._disk, comm, self._steps, now, every=every, only=only, times=times
-        )
-        self.summary: dict[str, Any] = self._head(title) | {"units": dict(units)}
+        self._bodies = BodyGrid(problem, options.quantities)
+        self._probes = self._probe_tables(options.probes)
+        now = self._now(options.quantities)
+        self._fields = FieldFiles(self.folder, self._disk, self._steps, now, options)
+        self.summary: dict[str, Any] = self._head(labels.title) | {"units": dict(labels.units)}
         if resumed is None:
             self._begin()
         else:
@@ -300,9 +277,9 @@ class Writer:
         found = [*missed, *found]
         self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
-        if self._vtkhdf:
+        if self._options.vtkhdf:
             self._disk.write(self._write_vtkhdf)
-        if self._pictures:
+        if self._options.pictures:
             self._disk.write(self._report)
 
     def abandon(self, message: str, details: str = "") -> None:
