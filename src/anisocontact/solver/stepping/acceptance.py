@@ -74,9 +74,9 @@ def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
     return Refusal(reason) if reason else None
 
 
-def rigid_body_whirls(problem: Problem, _: Vec) -> Refusal | None:
+def rigid_body_overturns(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states in which a free rigid body turns by half a turn or more."""
-    reason = problem.rigid.whirling()
+    reason = problem.rigid.overturned()
     return Refusal(reason) if reason else None
 
 
@@ -111,7 +111,7 @@ def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
 CHECKS: tuple[Check, ...] = (
     cells_inside_out,
     energy_not_a_number,
-    rigid_body_whirls,
+    rigid_body_overturns,
     held_points_stray,
     behind_a_master,
     contact_lets_go,

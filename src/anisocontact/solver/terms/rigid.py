@@ -17,12 +17,8 @@ from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
-from anisocontact.solver.terms.term import SingularError, Term
-from anisocontact.solver.terms.unheld import unheld
-
-#: Share of the stiffness of a body's contacts and springs below which a motion counts as free.
-_NOTHING = 1e-12
-_NAMES = ("along x", "along y", "along z", "about x", "about y", "about z")
+from anisocontact.solver.terms.term import Term
+from anisocontact.solver.terms.unsupported_rigid_body import check_supported, overturned
 
 
 class RigidBodies(Term):
@@ -265,7 +261,8 @@ class RigidBodies(Term):
                 stiff.append((blocks.held / scale).reshape(-1, 6))
             found.append((own, own, diagonal[None]))
             if not self.coupled[body]:  # else what holds the deformable body is looked at
-                self._check_support(body, np.concatenate(stiff))
+                free, contacts = ~self._drives[body].prescribed, self.contacts[body]
+                check_supported(body, free, np.concatenate(stiff), contacts, self._comm)
         return found
 
     @override
@@ -391,30 +388,7 @@ class RigidBodies(Term):
         reach = max(self._comm.allgather(max(local)))
         return np.repeat([1.0, reach or 1.0], 3)
 
-    def whirling(self) -> str:
-        """Which free body turns by half a turn or more in this part, in a line; empty if none does.
-
-        Next to nothing holds it then. Friction would be that of a turn the other way, or of none.
-        """
-        return next((told for told in map(self._whirls, self.free) if told), "")
-
-    def _whirls(self, body: RigidBody) -> str:
-        turn = np.abs(body.trial.turn - body.accepted.turn)
-        if not float(np.linalg.norm(turn)) >= np.pi:
-            return ""
-        named = _NAMES[3 + int(np.argmax(turn))]
-        return unheld(body, [named], self.contacts[body], self._comm)
-
-    def _check_support(self, body: RigidBody, stiff: Floats) -> None:
-        if told := self._whirls(body):
-            raise SingularError(told)
-        free = ~self._drives[body].prescribed
-        triangles = self._comm.allgather(np.linalg.qr(stiff, mode="r"))
-        everything = np.concatenate(triangles)
-        _, sizes, axes = np.linalg.svd(everything[:, free], full_matrices=True)
-        sizes = np.append(sizes, np.zeros(len(axes) - len(sizes)))
-        loose = axes[sizes <= _NOTHING * float(np.linalg.norm(everything))]
-        if len(loose):
-            part = (loose**2).sum(axis=0)
-            named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
-            raise SingularError(unheld(body, named, self.contacts[body], self._comm))
+    def overturned(self) -> str:
+        """A free body that turns by half a turn or more in this part, in a line; empty if none."""
+        found = (overturned(body, self.contacts[body], self._comm) for body in self.free)
+        return next(filter(None, found), "")

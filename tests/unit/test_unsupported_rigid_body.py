@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 
 from anisocontact.rigid import RigidBody
-from anisocontact.solver.terms.unheld import unheld
+from anisocontact.solver.terms.unsupported_rigid_body import without_support
 
 
 @pytest.mark.parametrize(
@@ -26,5 +26,7 @@ def test_a_body_that_touched_is_not_said_to_touch_nothing(before: int, now: int,
     """Requirement: a die on 19 points was to be brought into contact first, as a trial left it."""
     states = [SimpleNamespace(status=np.array([0, status])) for status in (before, now)]
     contact = cast(Any, SimpleNamespace(last=states[0], trial=states[1]))
-    told = unheld(RigidBody("die", (0, 0, 0), free=True), ["about y"], [contact], MPI.COMM_SELF)
+    told = without_support(
+        RigidBody("die", (0, 0, 0), free=True), ["about y"], [contact], MPI.COMM_SELF
+    )
     assert told.startswith(f"nothing holds the rigid body 'die' about y: {why}")
