@@ -20,10 +20,12 @@ run: setup ## run the main example and say where its pictures are
 	@echo "pictures: results/$(EXAMPLE)/report.html   fields for ParaView: results/$(EXAMPLE)/*.pvd"
 
 # Lint and tests at once; what lint has to say comes last. Tests of a file share what they solve; tests/conftest.py has files in the
-# order in which no process is left alone with a long one. Durations are kept in build.
+# order in which no process is left alone with a long one. Durations are kept in build. A process that dies ends the run, which names its
+# test: xdist 3.8 may wait for ever for one that it starts instead.
 define tested
   mkdir -p build; $(MAKE) --no-print-directory lint >build/lint.log 2>&1 & lint=$$!; tests=; \
-  $(IN_VENV) pytest -n auto --dist loadfile --no-loadscope-reorder --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
+  $(IN_VENV) pytest -n auto --dist loadfile --no-loadscope-reorder --max-worker-restart=0 \
+    --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
   wait $$lint || { cat build/lint.log >&2; exit 1; }; [ "$$tests" ]
 endef
 
