@@ -187,6 +187,39 @@ def test_drag_from_rest_in_few_increments(fe: Any, rigid: bool) -> None:
         assert warnings == []
 
 
+def test_sliding_that_begins_over_some_increments(fe: Any) -> None:
+    """Points of a block begin to slip one after the other, in the first increments of a drag.
+
+    Requirement: below 1e-3 of the work is open, and less with more increments. Source: the forces
+    have a kink at each of these points, whose work is that on the way between both ends, however
+    little it is. With the mean of both ends for what is less than a warning 0.4 % stayed open in 12
+    increments, 0.15 % in 8: it depended on where in an increment the kinks lay.
+    """
+    found = []
+    for n in (12, 16, 24, 32):
+        block = fe.block(fe.interface(coefficients=(0.3, 0.3)), cells=(2, 2, 1))
+        drag = Step("drag", n, {"block.top": {"x": 0.1, "y": 0.05}})
+        *_, last = Solver(block.problem, [_press(-0.01), drag], strategy="direct").run()
+        found.append(abs(last.energies["residual"]) / last.energies["external"])
+    assert found[0] < 1e-3
+    assert all(after < before for before, after in pairwise(found))
+
+
+def test_sliding_that_begins_as_a_block_is_pressed(fe: Any) -> None:
+    """Pressed, dragged and lifted again, in few increments and in more.
+
+    Requirement: below 1 % of the work is open along the way. Source: balance of energy. The mean of
+    both ends for kinks that are less than a warning each left 6.6 % in four increments, ten times
+    what two left.
+    """
+    for n in (1, 2, 4, 8):
+        block = fe.block(fe.interface(coefficients=(0.3, 0.3)), cells=(2, 2, 1))
+        path = [("press", n, 0.0, -0.01), ("drag", 2 * n, 0.1, -0.01), ("lift", n, 0.1, 0.0)]
+        steps = [Step(s, k, {"block.top": {"x": x, "y": 0.0, "z": z}}) for s, k, x, z in path]
+        for one in Solver(block.problem, steps, strategy="direct").run():
+            assert abs(one.energies["residual"]) < 0.01 * one.energies["external"]
+
+
 def test_what_is_left_is_of_second_order(fe: Any) -> None:
     """Dragged with friction and lifted while it slips, in 4 to 32 increments.
 

@@ -67,15 +67,13 @@ def test_balance_of_energy_closes_with_the_increment(fe):
     """External work less stored and dissipated energy vanishes as the increments get small.
 
     Requirement: balance of energy, residual at least of first order in the increment. Source:
-    first law; backward Euler for the law, trapezoidal rule for the work. Tolerance: the residual
-    falls at least by half for twice the increments. In the coarsest increments the work is taken
-    along the way, see `contact_work`: there it is no larger than first order makes of the next.
+    first law; backward Euler for the law, trapezoidal rule for the work, taken along the way where
+    points begin to slip, see `contact_work`. Tolerance: the residual falls at least by half for
+    twice the increments.
     """
     shares = []
     for n in (*COUNTS, 2 * COUNTS[-1]):
         _, energies = end_of_path(fe, "maximum-dissipation", n)
         shares.append(abs(energies["residual"]) / energies["external"])
-    along_the_way, *fine = shares
-    assert along_the_way < 2.0 * fine[0]
-    assert np.all(np.array(fine[1:]) < 0.5 * np.array(fine[:-1]))
-    assert fine[-1] < 1e-4
+    assert np.all(np.array(shares[1:]) < 0.5 * np.array(shares[:-1]))
+    assert shares[-1] < 1e-4

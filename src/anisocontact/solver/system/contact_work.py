@@ -35,8 +35,7 @@ from anisocontact.solver.system.parts import Parts
 CHANGED = 0.05
 #: Cosine of the angle of friction before and after from which on it has been reversed.
 BACK = -0.5
-#: What the middle of an increment has to add to the mean of its ends, over the work so far: what
-#: would be a warning; where bodies flow it is always added.
+#: What the laws have to add to the mean of both ends, over the work so far: what would warn.
 COARSE = LARGE
 #: Share of the work so far by which a point may change the rule, and points at which it ends.
 FINE, MOST = 1e-3, 32
@@ -243,10 +242,6 @@ class ContactWork:
         """Work on nodes and on rigid bodies along a piece, as fine as needed, and by the mean."""
         powers = {share: self._power(start, end, share, dt) for share in (0.0, 0.5, 1.0)}
         means = 0.5 * (powers[0.0] + powers[1.0])
-        if len(self._places) == 1:
-            missed = 0.5 * abs((powers[0.5] - means).sum())
-            if missed < COARSE * abs(work):
-                return means, means
         rest = abs(work - means.sum())
         while len(powers) < MOST:
             _, found = _rule(powers, rest)
