@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
 from typing import NoReturn
 
 import numpy as np
@@ -21,7 +20,6 @@ from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
-from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import (
     Overload,
     exhausted,
@@ -32,6 +30,7 @@ from anisocontact.solver.stepping.overload import (
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
+from anisocontact.solver.stepping.run_position import PLACE, RunPosition, fraction
 from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
@@ -42,33 +41,6 @@ from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
 from anisocontact.solver.terms.step import Step
-
-
-@dataclass
-class RunPosition:
-    """How far a run has come.
-
-    Attributes:
-        step: Number of the step, from 0.
-        time: Time at which it began.
-        control: Increments and parts of it.
-        begun: Whether the problem has the loads of the step.
-        before: State before the last accepted part of this step; None at its beginning.
-        spent: Newton iterations since the last accepted part.
-        lost: What came of a part of this increment in which equilibrium was lost for good.
-        stopped: Fractions at which steps that an event ended did, by number.
-        events: Looks for the event of the step; None before it has begun.
-    """
-
-    step: int
-    time: float
-    control: IncrementControl
-    begun: bool = False
-    before: Vec | None = None
-    spent: int = 0
-    lost: Outcome | None = None
-    stopped: dict[int, float] = field(default_factory=dict)
-    events: EventWatch | None = None
 
 
 @typed
@@ -125,7 +97,7 @@ class Solver:
         check_events(problem, self.steps)
         turns = prescribed_turns(problem.model, problem.materials, self.steps)
         self.cautions = [*self._doubtful, *turns]
-        self.place = self._beginning(0, 0.0)
+        self.place = RunPosition.beginning(0, 0.0, self.limits)
         self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
         self.choice = choose(strategy, self._task)
         self._options = Database(options_prefix, self._task.options)
@@ -181,18 +153,13 @@ class Solver:
         kept = self.problem.persistent()
         kept.common["problem"] = as_array(self._made_of)
         kept.common["energy_watch"] = self._energy.persistent()
-        place, control = self.place, self.place.control
-        numbers = asdict(control)
-        del numbers["limits"]
-        numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
-        numbers["kink"] = self._turns.kink
-        numbers["refused_angle"], numbers["refused_size"] = self._turns.refused
-        kept.common["stopped"] = np.array([*place.stopped.items()]).reshape(-1, 2)
-        kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
-        if place.events is not None:
-            kept.common.update(place.events.persistent())
-        if place.before is not None:
-            kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
+        angle, size = self._turns.refused
+        turns = {"kink": self._turns.kink, "refused_angle": angle, "refused_size": size}
+        kept.common.update({f"{PLACE}{name}": np.array(v) for name, v in turns.items()})
+        kept.common.update(self.place.persistent())
+        before = self.place.before
+        if before is not None:
+            kept.nodal["before"], kept.common["before"] = self.problem.layout.split(before)
         self._predictor.persistent(kept)
         kept.strategy.update(self._kept if self._newton is None else self._newton.persistent())
         return kept
@@ -206,15 +173,14 @@ class Solver:
         Raises:
             InputError: It is that of another problem: names what differs.
         """
-        numbers = {name: v.item() for name, v in kept.common.items() if name.startswith("place.")}
-        numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
-        step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
-        check_run(kept, self._made_of, self.problem.persistent(), step + begun)
-        self._turns.kink = numbers.pop("kink")
-        self._turns.refused = numbers.pop("refused_angle"), numbers.pop("refused_size")
-        before = None
-        stopped = {int(i): float(factor) for i, factor in kept.common["stopped"]}
-        self.problem.restore(kept, self.steps[: step + begun], stopped)
+        place = RunPosition.restored(kept.common, self.limits)
+        check_run(kept, self._made_of, self.problem.persistent(), place.steps_begun)
+        kink, *refused = (
+            kept.common[f"{PLACE}{name}"].item()
+            for name in ("kink", "refused_angle", "refused_size")
+        )
+        self._turns.kink, self._turns.refused = kink, (refused[0], refused[1])
+        self.problem.restore(kept, self.steps[: place.steps_begun], place.stopped)
         self._energy.restore(kept.common["energy_watch"])
         self._waiting = {n: v for n, v in kept.common.items() if n == "event"}
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
@@ -223,9 +189,8 @@ class Solver:
         states = goes_on or not self.problem.reduction.pending()
         self._predictor.restore(kept, states)
         if "before" in kept.nodal and states:
-            before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
-        control = IncrementControl(self.limits, **numbers)
-        self.place = RunPosition(step, time, control, begun, before, stopped=stopped)
+            place.before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
+        self.place = place
 
     def _all(self, note: Callable[[str], None], warn: Callable[[str], None]) -> Generator[Accepted]:
         """Step by step, with a solver that is closed however it ends."""
@@ -249,16 +214,14 @@ class Solver:
             if not self.problem.together.apart:
                 newton.close()
 
-    def _beginning(self, step: int, time: float) -> RunPosition:
-        return RunPosition(step, time, IncrementControl(self.limits, self.limits.largest))
-
     def _go_on(self, step: Step) -> None:
         """Go to the step after one that is done, or that an event has ended."""
         place, stopped = self.place, self.place.stopped
         factor = stopped.get(place.step, 1.0)
         if place.step in stopped:
             self.problem.end_at(factor)
-        self.place = self._beginning(place.step + 1, place.time + factor * step.duration)
+        time = place.time + factor * step.duration
+        self.place = RunPosition.beginning(place.step + 1, time, self.limits)
         self.place.stopped = stopped
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
@@ -281,8 +244,8 @@ class Solver:
             last = self.problem.accepted()
             control.goal = events.goal(control.done)
             events.begin(control.part, control.end)
-            slides, end = events.slides(), _whole(control.increment, control.end) / step.increments
-            now = self._reached(step)
+            slides, end = events.slides(), fraction(step, control.increment, control.end)
+            now = place.reached(step)
             overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
             if overloaded and events.overload():
                 continue
@@ -299,7 +262,7 @@ class Solver:
             accepted = self._accepted(step, increment, done, outcome, events)
             control.advance(outcome.iterations, outcome.relaxed, outcome.softer)
             if events.happened:
-                place.stopped[place.step] = _whole(increment, done) / step.increments
+                place.stopped[place.step] = fraction(step, increment, done)
                 control.increment = step.increments + 1
             control.bound(min(self._turns.allowed(part), largest))
             loads = not (self.problem.stabilisation.landed or self._energy.pushed_apart)
@@ -312,15 +275,14 @@ class Solver:
         """Solve the next part from the state that is predicted for its end."""
         control = self.place.control
         dt = step.duration / step.increments
-        whole = _whole(control.increment, control.end)
+        end = fraction(step, control.increment, control.end)
         part = dt if control.part == 1.0 else control.part * dt
-        self.problem.set_load_factor(whole / step.increments, part)
+        self.problem.set_load_factor(end, part)
         first, ratio = self._predictor.state(last, self.place.before, control)
         self._turns.permitted = control.cuttable
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
-        end, now = whole / step.increments, self._reached(step)
-        overloads = past_holding(self.problem, end, now, control.cuts)
+        overloads = past_holding(self.problem, end, self.place.reached(step), control.cuts)
         with self._options:
             return attempts.solve(first, last, ratio, control, overloads)
 
@@ -338,7 +300,7 @@ class Solver:
                 Cut(
                     step=step.name,
                     increment=control.increment,
-                    time=self._time(step, control.increment, control.done),
+                    time=self.place.time_at(step, control.increment, control.done),
                     size=tried,
                     next_size=control.part,
                     reason="; ".join(text for text in (result.reason, more) if text),
@@ -357,7 +319,7 @@ class Solver:
 
     def _overloads(self, step: Step) -> list[Overload]:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
-        end, now = self.place.control.increment / step.increments, self._reached(step)
+        end, now = self.place.control.increment / step.increments, self.place.reached(step)
         found = too_much_load(self.problem, end, now)
         return found or exhausted(self.problem, now)
 
@@ -386,13 +348,6 @@ class Solver:
             increment = self.place.control.increment
             self._on_iteration(Progress(step, increment, iteration, residual, counts))
 
-    def _reached(self, step: Step) -> float:
-        """Fraction of the step of the accepted state."""
-        return _whole(self.place.control.increment, self.place.control.done) / step.increments
-
-    def _time(self, step: Step, increment: int, done: float) -> float:
-        return self.place.time + _whole(increment, done) * (step.duration / step.increments)
-
     def _accepted(
         self, step: Step, increment: int, done: float, outcome: Outcome, events: EventWatch
     ) -> Accepted:
@@ -406,7 +361,7 @@ class Solver:
             step_index=self.place.step,
             increment=increment,
             done=done,
-            time=self._time(step, increment, done),
+            time=self.place.time_at(step, increment, done),
             iterations=self.place.spent,
             residuals=outcome.result.residuals,
             contacts={c.name: c.counts() for c in contacts},
@@ -424,8 +379,3 @@ class Solver:
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
         )
-
-
-def _whole(increment: int, done: float) -> float:
-    """Increments from the beginning of the step to a share of one of them."""
-    return increment if done == 1.0 else increment - 1 + done
