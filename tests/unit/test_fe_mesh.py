@@ -104,6 +104,8 @@ def test_box_has_its_faces(cell):
             {"planes_x": (0, 1), "ratio": (2, 1, 1)},
             "planes_x: given with ratio 2 along x, one of the two",
         ),
+        ({"planes_x": (0, 1 - 2e-9)}, "planes_x: [0.0, 0.999999998] given, must rise from 0 to 1"),
+        ({"planes_z": (2e-9, 1)}, "planes_z: [2e-09, 1.0] given, must rise from 0 to 1"),
     ],
 )
 def test_bad_box_is_one_line(given, line):
@@ -113,6 +115,18 @@ def test_bad_box_is_one_line(given, line):
     with pytest.raises(InputError) as caught:
         BoxSpec(**({"origin": (0, 0, 0), "size": (1, 1, 1), "cells": (1, 1, 1)} | given))
     assert str(caught.value) == line
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("off", [3e-13, -3e-13, 9e-10, -9e-10])
+def test_planes_that_miss_the_ends_by_rounding_are_there(axis, off):
+    """Requirement: planes that a script computed rise from 0 to 1 exactly, those between stay."""
+    from anisocontact.mesh import BoxSpec
+
+    given = {f"planes_{'xyz'[axis]}": (off, 0.3, 1.0 - off)}
+    cells = np.where(np.arange(3) == axis, 2, 1).tolist()
+    box = BoxSpec(origin=(0, 0, 0), size=(1, 1, 1), cells=cells, **given)
+    assert box.blocks()[0].planes[axis].tolist() == [0.0, 0.3, 1.0]
 
 
 def test_boxes_of_different_cells_are_refused():

@@ -11,7 +11,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.mesh.lattice import Block, Side
+from anisocontact.mesh.lattice import SAME_NODE, Block, Side
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
     check_shape,
@@ -106,7 +106,7 @@ class BoxSpec:
                 text = f"{len(planes)} given, {cells + 1} needed for {cells} cells along {axis}"
                 raise InputError(text, field)
             if planes[0] != 0.0 or planes[-1] != 1.0 or np.any(np.diff(planes) <= 0.0):
-                raise InputError(f"{list(planes)} given, must rise from 0 to 1", field)
+                raise InputError(f"{planes.tolist()} given, must rise from 0 to 1", field)
             if len(getattr(self, f"zone_{axis}")):
                 raise InputError(f"given with zone_{axis}, one of the two", field)
             if ratio != 1.0:
@@ -116,15 +116,17 @@ class BoxSpec:
     def blocks(self) -> list[Block]:
         """One block; see `Shape`."""
         planes = [
-            np.asarray(self._given(axis), dtype=float)
-            if len(self._given(axis))
-            else spaced(self, axis, cells, ratio)
+            self._given(axis) if len(self._given(axis)) else spaced(self, axis, cells, ratio)
             for axis, cells, ratio in zip(AXES, self.cells, self.ratio, strict=True)
         ]
         return [Block((planes[0], planes[1], planes[2]), self._place, FACES)]
 
-    def _given(self, axis: str) -> Sequence[float]:
-        planes: Sequence[float] = getattr(self, f"planes_{axis}")
+    def _given(self, axis: str) -> Floats:
+        """The planes along an axis; ends that miss 0 or 1 by rounding are there."""
+        planes = np.array(getattr(self, f"planes_{axis}"), dtype=float)
+        for at, end in ((0, 0.0), (-1, 1.0)):
+            if len(planes) and abs(planes[at] - end) <= SAME_NODE:
+                planes[at] = end
         return planes
 
     def _place(self, share: Floats) -> Floats:
