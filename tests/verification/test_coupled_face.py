@@ -233,6 +233,29 @@ def test_what_cannot_be_is_one_line(more, steps, says):
     assert says in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("same", "ends"),
+    [
+        (True, "have the coupled face 'bar.left' as well; make one group of the two by [join]"),
+        (False, "have the coupled face 'bar.left' as well"),
+    ],
+)
+def test_faces_that_share_nodes_are_to_be_joined_where_one_body_has_both(same, ends):
+    """Requirement: the line says how one body takes both; two bodies cannot."""
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import CoupledFace, Problem
+
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    head, other = (RigidBody(name, (0, 0, 1), free=True) for name in ("head", "other"))
+    coupled = [CoupledFace("bar.left", head if same else other), CoupledFace("bar.top", head)]
+    with pytest.raises(InputError) as caught:
+        Problem(model, {"bar": make_material(**SLIM)}, coupled=coupled)
+    start = "coupled.bar.top: 2 nodes of 'bar.top', which follows the rigid body 'head', "
+    assert str(caught.value) == start + ends
+
+
 def test_condensed_says_that_it_cannot():
     """Requirement: among the obstacles of the strategy, so that `auto` takes another."""
     from anisocontact.solver import Step, Task

@@ -222,7 +222,9 @@ class CoupledFaces:
         ]
         for i, face in enumerate(self.faces):
             for other in self.faces[:i]:
-                self._refuse_shared(other.nodes, face, f"the coupled face {other.group!r}")
+                what = f"the coupled face {other.group!r}"
+                advice = "; make one group of the two by [join]" if other.body is face.body else ""
+                self._refuse_shared(other.nodes, face, what, advice=advice)
         self._places: dict[str, tuple[int, Floats]] = {}
 
     def __bool__(self) -> bool:
@@ -383,11 +385,13 @@ class CoupledFaces:
             np.concatenate(handed) if moments else None,
         )
 
-    def _refuse_shared(self, nodes: Ints, face: FaceOnBody, what: str, field: str = "") -> None:
+    def _refuse_shared(
+        self, nodes: Ints, face: FaceOnBody, what: str, field: str = "", advice: str = ""
+    ) -> None:
         shared = self._comm.allreduce(len(np.intersect1d(nodes, face.nodes)))
         if shared:
             text = (
                 f"{shared} nodes of {face.group!r}, which follows the rigid body "
-                f"{face.body.name!r}, have {what} as well"
+                f"{face.body.name!r}, have {what} as well{advice}"
             )
             raise InputError(text, field or f"coupled.{face.group}")
