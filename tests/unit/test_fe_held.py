@@ -10,7 +10,7 @@ from anisocontact.bulk import make_material
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
-from anisocontact.mesh import BoxSpec, CylinderSpec, build_box, build_mesh
+from anisocontact.mesh import BoxSpec, CylinderSpec, Model, build_box, build_mesh
 from anisocontact.mesh.build import Body
 from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step, Turn
 
@@ -44,6 +44,16 @@ anchor = { pull = { z = 0.6 } }
 def small(material="linear-elastic", **held):
     model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
     return Problem(model, {"bar": make_material(material, E=1.0, nu=0.3)}, **held)
+
+
+def test_a_mesh_without_groups_says_how_to_name_facets():
+    """Requirement: where there is no name to choose from the line says where names are made."""
+    whole = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    bare = Model(whole.mesh, {"bar": whole.cells("bar")}, {})
+    with pytest.raises(InputError) as caught:
+        bare.facets("bar.top", "symmetry")
+    line = "symmetry: no facet group 'bar.top': the mesh has none; [group] names facets by place"
+    assert str(caught.value) == line
 
 
 @pytest.mark.parametrize(

@@ -208,6 +208,9 @@ class Model:
         Raises:
             InputError: No such group; the line suggests the nearest name.
         """
+        if not self._facets:
+            text = f"no facet group {name!r}: the mesh has none; [group] names facets by place"
+            raise InputError(text, field)
         return _looked_up(self._facets, name, "facet group", field)
 
     def name_nodes(self, name: str, nodes: Locals) -> None:
