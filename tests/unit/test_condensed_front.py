@@ -250,7 +250,7 @@ def test_what_is_prescribed_is_no_part_of_a_factor() -> None:
     other, held = matrix.copy(), np.isin(np.arange(n), [0, 60, 200, 201, 299])
     matrix.data[held[rows] & (rows != matrix.indices)] = 0.0
     factor = BorderedLU(matrix, border)
-    assert len(factor._known.others) == n - 4
+    assert len(factor._interior._known.others) == n - 4
     factor.renew(scipy.sparse.csr_array((100, 100)), *none)
     for known in (np.arange(1.0, n + 1.0), np.where(held, 0.0, 1.0)):
         assert np.abs(factor.solution(matrix @ known) - known).max() < 1e-2

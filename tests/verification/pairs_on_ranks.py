@@ -261,6 +261,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "in-python": _in_python,
     "second-order": _second_order,
     "far": _far,
+    "far-condensed": _far,
     "augmented": _augmented,
     "following": _following,
     "following-plane": _following_plane,
@@ -273,6 +274,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "mortar-following": _mortar_following,
     "mortar-plane": _mortar_plane,
     "mortar-iterative": _mortar,
+    "mortar-condensed": _mortar,
     "mortar-under-a-lid": _mortar_under_a_lid,
     "mortar-symmetric": _mortar_symmetric,
 }
@@ -310,7 +312,7 @@ def run(name: str, folder: Path, mode: str) -> None:
     problem, steps = CASES[name]()
     ranks = problem.comm.size
     tolerance = FOLLOWING if name in WITH_MULTIPLIERS else TOLERANCE
-    strategy = "iterative" if name.endswith("iterative") else "direct"
+    strategy = next((s for s in ("iterative", "condensed") if name.endswith(s)), "direct")
     solver = Solver(problem, steps, options={"snes_rtol": tolerance}, strategy=strategy)
     if mode.startswith("from:"):
         stored = load_checkpoint(folder / f"{name}-{mode[5:]}-stop")

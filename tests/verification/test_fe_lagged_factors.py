@@ -30,7 +30,13 @@ from anisocontact.laws import Friction
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.stepping.attempts import Attempts, _Way
-from anisocontact.solver.strategies.condensed import bordered, interior, lagged, lagged_newton
+from anisocontact.solver.strategies.condensed import (
+    bordered,
+    interior,
+    lagged,
+    lagged_newton,
+    old_tangent,
+)
 from anisocontact.solver.strategies.condensed.factor import singular
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from anisocontact.solver.strategies.condensed.lagged_newton import CAREFUL, ROUGH, LaggedNewton
@@ -177,8 +183,10 @@ def test_couplings_that_are_in_the_border_need_no_new_factor() -> None:
     factor.outgrow()
     assert _corrected(problem, factor, 1e-9) < 1e-5
     assert factor.factors == 1
-    assert factor._touched is not None
-    factor._touched.unknowns = factor._touched.unknowns[3:]
+    kept = factor._factor
+    assert isinstance(kept, old_tangent.OneFactor)
+    assert kept._touched is not None
+    kept._touched.unknowns = kept._touched.unknowns[3:]
     factor.outgrow()
     assert _corrected(problem, factor, 1e-9) < 1e-5
     assert factor.factors == 2
@@ -197,7 +205,7 @@ def test_a_factor_in_single_precision_that_is_not_enough(monkeypatch: pytest.Mon
             monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)
         return factor
 
-    monkeypatch.setattr(lagged, "BorderedLU", made)
+    monkeypatch.setattr(old_tangent, "BorderedLU", made)
     problem = _on_plane()
     problem.set_load_factor(1.0, 1.0)
     factor = LaggedFactor(problem, lambda _: None)
@@ -215,7 +223,7 @@ def test_where_no_kept_factor_serves(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)  # of no use
         return factor
 
-    monkeypatch.setattr(lagged, "BorderedLU", made)
+    monkeypatch.setattr(old_tangent, "BorderedLU", made)
     problem = _on_plane()
     problem.set_load_factor(1.0, 1.0)
     factor = LaggedFactor(problem, lambda _: None)

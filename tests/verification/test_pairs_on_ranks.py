@@ -137,7 +137,7 @@ def test_two_processes(folder: Path) -> None:
     Requirement: 1e-8, also where edges lie on each other. Source: the same equations. Tolerance
     1e-10: sums in another order; 1e-13 measured.
     """
-    names = ("single", "far")
+    names = ("single", "far", "far-condensed")
     for ranks in (1, 2):
         start(ranks, folder, "whole", *names)
     for name in names:
@@ -224,7 +224,7 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
     order; 2e-13 measured, in the history of the slave points.
     """
-    names = ("far", "single", "in-python", "mortar-far", "mortar-folded")
+    names = ("far", "far-condensed", "single", "in-python", "mortar-far", "mortar-folded")
     start(before, folder, "stop", *names)
     start(after, folder, f"from:{before}", *names)
     for name in names:

@@ -39,13 +39,16 @@ class FormMatrix:
         self._form = form
         self.matrix: Mat = create_stiffness(form)
         self._rows: Any = None
-        if form.mesh.comm.size == 1:
+        self._wrapped: Mat
+        if form.mesh.comm.size > 1:
+            self._wrapped = self.matrix.duplicate()
+        else:
             self._rows = fem.create_matrix(form, la.BlockMode.expanded)
             parts = (self._rows.indptr, self._rows.indices)
             sides = [side.astype(PETSc.IntType) for side in parts]
             sizes = self.matrix.getSizes()
             csr = (*sides, self._rows.data)
-            self._wrapped: Mat = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
+            self._wrapped = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
             self._places = PlacesInMatrix(*parts)
 
     def write(self, out: Mat, *, again: bool = False) -> None:
@@ -53,23 +56,27 @@ class FormMatrix:
 
         Args:
             out: Where to.
-            again: On one process, whether it is that of the last call instead of that at the
-                coefficients of now.
+            again: Whether it is that of the last call instead of that at the coefficients of now.
         """
         out.zeroEntries()
-        if self._rows is None:
-            assemble_into(out, self._form)
-        else:
-            if not again:
-                self._rows.data[:] = 0.0
-                fem.assemble_matrix(self._rows, self._form)
-                self._wrapped.assemble()
-            if not self._places.copy(self._rows.data, out):
-                add_matrix(out, self._wrapped)
+        if not again:
+            self._assemble()
+        if self._rows is None or not self._places.copy(self._rows.data, out):
+            add_matrix(out, self._wrapped)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
 
+    def _assemble(self) -> None:
+        """Take the coefficients of now."""
+        if self._rows is None:
+            self._wrapped.zeroEntries()
+            assemble_into(self._wrapped, self._form)
+        else:
+            self._rows.data[:] = 0.0
+            fem.assemble_matrix(self._rows, self._form)
+        self._wrapped.assemble()
+
     def times(self, x: Vec, out: Vec) -> None:
-        """The product of what was last written with a vector, on one process."""
+        """The product of what was last written with a vector."""
         self._wrapped.mult(x, out)
 
 

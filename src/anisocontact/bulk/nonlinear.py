@@ -156,7 +156,8 @@ class NonlinearBulk:
 
         Args:
             out: A matrix that has room for it.
-            again: On one process, whether it is to be what the last call has written instead.
+            again: Whether it is to be what the last call has written instead; with changes of
+                volume that are kept apart on one process.
         """
         if again:
             self._tangent.write(out, again=True)
@@ -173,7 +174,7 @@ class NonlinearBulk:
         return self._pressures if self._pressures.of else None
 
     def times(self, x: Vec) -> Vec:
-        """The product of what `tangent` has written last with a vector, on one process."""
+        """The product of what `tangent` has written last with a vector."""
         out = x.duplicate()
         self._tangent.times(x, out)
         self._pressures.add_product(x, out)

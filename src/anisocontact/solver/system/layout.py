@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI, PETSc, Vec
@@ -71,3 +74,10 @@ class Layout:
         local = np.array([values @ values for values in owned])
         self.comm.Allreduce(MPI.IN_PLACE, local)
         return [float(square) for square in np.sqrt(local)]
+
+    def total(self, values: npt.ArrayLike) -> Any:
+        """Sum over all ranks, entry by entry; collective."""
+        own = np.asarray(values)
+        out = np.empty_like(own)
+        self.comm.Allreduce(own, out)
+        return out

@@ -48,7 +48,7 @@ class Bodies(Term):
     Attributes:
         unknowns: As given.
         scale: Mean diagonal of the tangent at rest, force/length.
-        again: On one process, whether `add_tangent` writes once more what it has written last.
+        again: Whether `add_tangent` writes once more what it has written last.
         largest: Norm of `stiff` over all ranks in the largest state accepted so far, force. What is
             left of that state where it has gone back to zero is its rounding.
     """
@@ -77,7 +77,7 @@ class Bodies(Term):
     def missed(self) -> Floats:
         """What forces have changed by since the last tangent, beyond what it says.
 
-        Of the last evaluation, of all unknowns; on one process.
+        Of the last evaluation, of the unknowns of the mesh that this rank owns.
         """
         assert self._written is not None, "`add_tangent` comes first"
         u, inner = self._written

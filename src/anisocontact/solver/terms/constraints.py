@@ -40,6 +40,11 @@ class Constraints:
         self.ties = ties
         self._faces = faces if faces else None
 
+    def __bool__(self) -> bool:
+        """Whether there are any beside faces that follow rigid bodies, before a step too."""
+        planes = self._guides is not None and bool(self._guides.groups)
+        return planes or self.ties is not None or self._middles is not None
+
     @property
     def holding(self) -> Ints:
         """Unknowns of this rank that guides and faces have follow others, local numbers."""

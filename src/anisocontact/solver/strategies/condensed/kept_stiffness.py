@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import numpy as np
-
 from anisocontact.solver.system.problem import Problem
 
 #: Share of the forces out of balance that is due to a tangent of the bodies before it is made anew.
@@ -20,7 +18,7 @@ class KeptStiffness:
     is out of balance, the next correction would gain next to nothing by one of now.
 
     Args:
-        problem: The problem, on one process.
+        problem: The problem.
 
     Attributes:
         made: Tangents of the bodies so far.
@@ -58,8 +56,9 @@ class KeptStiffness:
             return False
         missed = problem.constraints.tied(problem.assembly.bodies.missed())
         missed[held[held < len(missed)]] = 0.0
-        moved, norm = balance.residual[held], float(np.linalg.norm(balance.residual))
+        residual = balance.residual
+        missing, moved, norm = problem.layout.norms(missed, residual[held], residual)
         if problem.contact_term.simultaneous:
             norm = balance.norm
-        left = max(norm**2 - float(moved @ moved), 0.0) ** 0.5
-        return bool(np.linalg.norm(missed) < SHARE * left)
+        left = max(norm**2 - moved**2, 0.0) ** 0.5
+        return bool(missing < SHARE * left)

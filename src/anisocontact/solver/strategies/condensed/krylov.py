@@ -18,6 +18,7 @@ def gmres[T: (np.float32, np.float64)](
     rtol: float,
     most: int,
     trial: int | None = None,
+    total: Callable[[npt.NDArray[T]], npt.NDArray[T]] | None = None,
 ) -> tuple[npt.NDArray[T], float, int]:
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
@@ -30,6 +31,7 @@ def gmres[T: (np.float32, np.float64)](
         most: Most iterations.
         trial: Iterations after which it also ends where at the rate so far the most will not do;
             it goes on if not given.
+        total: Sum over all processes, where each has a part of the vectors; collective.
 
     Returns:
         Solution, norm of its residual over that of `b`, number of iterations.
@@ -38,7 +40,12 @@ def gmres[T: (np.float32, np.float64)](
         >>> gmres(lambda v: (v, 2.0 * v), np.array([4.0]), 1e-12, 5)
         (array([2.]), 0.0, 1)
     """
-    norm = float(np.linalg.norm(b))
+
+    def size(v: npt.NDArray[T]) -> float:
+        # of what is no number neither is the size
+        return float(np.linalg.norm(v) if total is None else np.sqrt(total(v @ v)))
+
+    norm = size(b)
     if norm == 0.0:
         return np.zeros_like(b), 0.0, 0
     # SciPy's library alone: threads of NumPy's would wait for each other with those of SciPy's
@@ -50,15 +57,16 @@ def gmres[T: (np.float32, np.float64)](
     left, used = 1.0, 0
     while used < most:
         directions[:, used], w = step(basis[:, used])
-        if not np.isfinite(w).all():
+        if not (np.isfinite(w).all() if total is None else math.isfinite(size(w))):
             break
         used += 1
         column = np.zeros(used + 1)
         for _ in range(2):  # twice is enough for orthogonality to rounding
             shares = product(1.0, basis[:, :used], w, trans=1)
+            shares = shares if total is None else total(shares)
             column[:used] += shares
             w = product(-1.0, basis[:, :used], shares, beta=1.0, y=w)
-        length = float(np.linalg.norm(w))
+        length = size(w)
         column[used] = length
         left = reduced.add(column) / norm
         if left <= rtol or length == 0.0:

@@ -7,14 +7,14 @@ from collections.abc import Callable
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Mat
-from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
+from anisocontact.solver.strategies.condensed.border import PARTS
 from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
-from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
-from anisocontact.solver.strategies.condensed.touched import Touched
+from anisocontact.solver.strategies.condensed.old_tangent import OldTangent, OneFactor
+from anisocontact.solver.strategies.condensed.substructures import Substructures
 from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
 from anisocontact.solver.strategies.once import once
 from anisocontact.solver.strategies.whole import WholeLU
@@ -22,8 +22,8 @@ from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
-#: What is kept of the factor, of changes of volume then, and of its border.
-_MATRIX, _SLOPE, _BORDER = "lagged.matrix", "lagged.slope", "lagged.border."
+#: What is kept of changes of volume when the factor was made.
+_SLOPE = "lagged.slope"
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
 #: Share of them after which an old factor that leads nowhere is given up.
@@ -35,17 +35,17 @@ _LAST, _MARGIN = 10, 1.25
 class LaggedFactor:
     """Solves with the tangent J of now by GMRES, preconditioned from the right.
 
-    The preconditioner is an earlier tangent, factorised once, whose border has the contacts of now:
-    `P = J_old + C - C_old` with C what acts on the unknowns that contact can couple. All that
-    changes at once is in it, and what it lacks is the change of the bodies since. Where volume is
-    kept apart it is the mixed form that is preconditioned, see `MixedForm`.
+    The preconditioner is an earlier tangent, factorised once, whose border has the contacts of now,
+    see `OldTangent`. All that changes at once is in it, and what it lacks is the change of the
+    bodies since. Where volume is kept apart it is the mixed form that is preconditioned, see
+    `MixedForm`.
 
     `FactorRenewal` says when a new factor pays. All unknowns are factorised for a correction alone
     where a new factor in double precision does not lead to it either, and in the place of new
     factors that cost more, see `KrylovBackoff`.
 
     Args:
-        problem: The problem, on one process.
+        problem: The problem.
         note: Called with a line for every factorisation.
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
 
@@ -57,17 +57,16 @@ class LaggedFactor:
         self, problem: Problem, note: Callable[[str], None], kept: Arrays | None = None
     ) -> None:
         self._problem, self._note = problem, once(note)
-        self._factor: BorderedLU | None = None
-        self._touched: Touched | None = None
-        self._of_factor = scipy.sparse.csr_array((0, 0))
+        self._several = problem.comm.size > 1
+        self._factor: OldTangent = Substructures(problem) if self._several else OneFactor(problem)
         self._slope = scipy.sparse.csr_array((0, 0))
-        self._single, self._due = True, True
+        self._single, self._due, self._made = True, True, False
         self._renewal, self._backoff = FactorRenewal(_LAST, _MARGIN), KrylovBackoff()
         #: Costs in solutions: of this correction so far, and of the last one with a new factor.
         self._spent = self._with_new = 0.0
         self._interiors, self._whole = 0, WholeLU()
         self.krylov: list[int] = []
-        if kept and f"{_MATRIX}.data" in kept:
+        if kept and "lagged.flags" in kept:
             self._restore(kept)
 
     def persistent(self) -> Arrays:
@@ -75,24 +74,18 @@ class LaggedFactor:
 
         The factor is not written but made again, from the same numbers in the same order.
         """
-        factor, touched = self._factor, self._touched
-        if factor is None or touched is None:
+        own = self._factor.persistent() if self._made else {}
+        if not own:
             return {}
-        return {
-            "lagged.unknowns": touched.unknowns,
+        return own | {
             "lagged.spent": self._renewal.persistent(),
             "lagged.flags": np.array([self._single, self._due]),
             "lagged.trust": self._backoff.persistent(),
             "lagged.with_new": np.array(self._with_new),
-            **{f"{_MATRIX}.{part}": getattr(self._of_factor, part) for part in PARTS},
             **{f"{_SLOPE}.{part}": getattr(self._slope, part) for part in PARTS},
-            **{f"{_BORDER}{name}": one for name, one in factor.persistent().items()},
         }
 
     def _restore(self, kept: Arrays) -> None:
-        n, unknowns = self._problem.unknowns, kept["lagged.unknowns"]
-        parts = tuple(kept[f"{_MATRIX}.{part}"] for part in PARTS)
-        self._of_factor = scipy.sparse.csr_array(parts, (n, n))
         slope = tuple(kept[f"{_SLOPE}.{part}"] for part in PARTS)
         columns = self._problem.bulk.stiffness.getSize()[1]
         self._slope = scipy.sparse.csr_array(slope, (len(slope[-1]) - 1, columns))
@@ -100,22 +93,21 @@ class LaggedFactor:
         self._renewal.restore(kept["lagged.spent"])
         self._backoff.restore(kept["lagged.trust"])
         self._with_new = float(kept["lagged.with_new"])
-        self._factor = self._made(unknowns)
-        begin = len(_BORDER)
-        own = {name[begin:]: one for name, one in kept.items() if name.startswith(_BORDER)}
-        self._factor.restore(own)
-        self._touched = Touched(self._problem, unknowns)
+        self._factor.restore(kept, self._single)
+        self._made = True
 
     def outgrow(self) -> None:
         """Take it that contacts couple other nodes than before; those may be in the border."""
-        self._due = self._due or self._touched is None or self._touched.outgrown()
+        self._due = self._factor.outgrown() or self._due
+        if self._several:  # PETSc would go on with the symbolic factorisation of the old pattern
+            self._whole.close()
 
     def solve(self, tangent: Mat, b: Floats, rtol: float) -> Floats | None:
         """Correction for a right-hand side; None where the tangent is singular.
 
         Args:
             tangent: J.
-            b: Right-hand side, (n,).
+            b: Right-hand side of the unknowns this process owns, (n,).
             rtol: Norm of the residual over that of `b` at which to stop.
         """
         self.krylov.append(0)
@@ -152,17 +144,13 @@ class LaggedFactor:
     def close(self) -> None:
         """Give back the memory."""
         self._whole.close()
-        self._drop()
+        self._factor.close()
+        self._made = False
 
     @property
     def factors(self) -> int:
         """Factorisations so far."""
         return self._interiors + self._whole.made
-
-    def _drop(self) -> None:
-        if self._factor is not None:
-            self._factor.close()
-        self._factor = None
 
     @property
     def _whole_cost(self) -> float:
@@ -170,17 +158,17 @@ class LaggedFactor:
 
         Operations are about those for the interior, and take half of the time in single precision.
         """
-        if self._factor is None:
+        if not self._made:
             return 0.0
         return (2.0 if self._single else 1.0) * self._factor.solutions_per_factor + 1.0
 
     def _corrected(self, tangent: Mat, b: Floats, rtol: float, fresh: bool) -> tuple[Floats, float]:
         """What Krylov iterations find, and the norm of its residual over that of `b`."""
-        factor, touched = self._factor, self._touched
-        if factor is None or touched is None:
+        factor = self._factor
+        if not self._made:
             return b, np.inf
         try:
-            spent = factor.renew(touched.tangent(), *touched.shares())
+            spent = factor.renew()
         except SingularError:
             return b, np.inf
         given, out = tangent.createVecs()
@@ -200,77 +188,44 @@ class LaggedFactor:
                 found = factor.solution(v)
                 return found, product(found)
 
-            found, left, used = gmres(step, b, rtol, most, trial)
+            total = self._problem.layout.total if self._several else None
+            found, left, used = gmres(step, b, rtol, most, trial, total)
         else:
             mixed = MixedForm(self._problem, self._slope, volume.rows())
             found, left, used = mixed.solve(factor.solution, product, b, rtol, most, trial)
         self.krylov[-1] += used
-        self._count(factor, spent + used, left, fresh)
+        self._count(spent + used, left, fresh)
         return found, left
 
-    def _count(self, factor: BorderedLU, cost: float, left: float, fresh: bool) -> None:
+    def _count(self, cost: float, left: float, fresh: bool) -> None:
         """Compare what this correction has cost with the average since the last factor."""
         if not np.isfinite(left):
             return
         self._spent += cost
         if fresh:
-            self._renewal.begin(factor.solutions_per_factor)
-            self._spent += factor.solutions_per_factor
-            self._with_new = factor.solutions_per_factor + cost
+            per_factor = self._factor.solutions_per_factor
+            self._renewal.begin(per_factor)
+            self._spent += per_factor
+            self._with_new = per_factor + cost
         self._renewal.add(cost, left)
         self._due = self._renewal.due
 
     def _renewed(self, tangent: Mat) -> bool:
         """Make a factor of this tangent; the old one stays where there is none."""
-        touched, before = Touched(self._problem), self._of_factor
-        starts, columns, values = tangent.getValuesCSR()
-        given = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
-        self._of_factor = touched.without(given)
         try:
-            factor = self._retaken(touched.unknowns, before) or self._made(touched.unknowns)
+            self._factor.take(tangent, self._single)
         except SingularError:
-            self._of_factor = before
             return False
-        if factor is not self._factor:
-            self._drop()
         volume = self._problem.bulk.volume
         if volume is not None:
             self._slope = volume.rows().slope
-        self._factor, self._touched = factor, touched
-        self._due = False
+        self._made, self._due = True, False
         self._interiors += 1
         self._note(
-            f"condensing {tangent.getSize()[0]} unknowns on {len(touched.unknowns)} that contact "
+            f"condensing {tangent.getSize()[0]} unknowns on {self._factor.border} that contact "
             f"can couple, in {'single' if self._single else 'double'} precision (MUMPS)"
         )
         return True
-
-    def _retaken(self, unknowns: Ints, before: Sparse) -> BorderedLU | None:
-        """The factor that there is, now of what has been taken of a tangent, if it has the places.
-
-        Args:
-            unknowns: Of the border.
-            before: What it is of.
-
-        Raises:
-            SingularError: There is none; it is that of before again.
-        """
-        factor = self._factor
-        if factor is None:
-            return None
-        try:
-            return factor if factor.take(self._of_factor, unknowns, self._single) else None
-        except SingularError:
-            factor.take(before, unknowns, self._single)
-            raise
-
-    def _made(self, unknowns: Ints) -> BorderedLU:
-        """The factor of what has been taken of a tangent.
-
-        Raises:
-            SingularError: There is none.
-        """
-        return BorderedLU(self._of_factor, unknowns, self._single)
 
     def _doubled(self, tangent: Mat) -> bool:
         """Make a factor in double precision, from now on."""

@@ -32,7 +32,7 @@ class LaggedNewton(Newton):
     Residual, tangent and line search are those of `direct`.
 
     Args:
-        problem: The problem, on one process.
+        problem: The problem.
         prefix: Prefix of the PETSc options.
         options: PETSc options of SNES without prefix.
         on_iteration: Called with the number of the iteration and the residual.
@@ -86,7 +86,8 @@ class LaggedNewton(Newton):
         """Newton correction, for PETSc: a preconditioner that is the solution."""
         tangent, _ = pc.getOperators()
         right = np.array(b.array_r)
-        rtol = self._forcing.rtol(self._problem, float(np.linalg.norm(right)))
+        (size,) = self._system.layout.norms(right)
+        rtol = self._forcing.rtol(self._problem, size)
         found = self._factor.solve(tangent, right, rtol)
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)

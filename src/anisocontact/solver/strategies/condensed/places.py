@@ -12,7 +12,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.quadrature import Couplings
 
 #: Slave nodes, master nodes and their shares, as of `Contacts.opposite`.
-Opposite = tuple[Locals, Locals, Floats]
+Opposite = tuple[Locals | Ints, Locals | Ints, Floats]
 
 
 class Places:

@@ -21,7 +21,13 @@ from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton
 from anisocontact.solver.strategies.condensed.reach import touched_nodes
 from anisocontact.solver.strategies.condensed.work import work
-from anisocontact.solver.strategies.costs import Condensable, Part, condensing_bytes, too_large
+from anisocontact.solver.strategies.costs import (
+    Condensable,
+    Part,
+    condensing_bytes,
+    factor_bytes,
+    too_large,
+)
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -36,6 +42,8 @@ MOST_CONTACT = 8000
 WIDE_LINEAR, WIDE, POWER = 5.0, 4.1, 2.0 / 3.0
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
+#: Displacements of a node in space; bytes of an entry of a dense matrix in single precision.
+AXES_OF_NODES, DENSE = 3, 4
 #: Nodes opposite to the facets that meet at a slave node, over those of a facet: 16 for 4 where
 #: facets are of about the same size.
 _OPPOSITE = 4
@@ -54,12 +62,11 @@ class CondensedStrategy:
         """What it cannot do."""
         problem = task.problem
         if problem.comm.size > 1:
-            yield f"it runs in one process, {problem.comm.size} given"
+            yield from _not_on_several(problem)
         if not problem.contacts:
             yield "there is no contact"
-        if not problem.linear and not bordered.reachable():
-            names = [name for name, law in problem.materials.items() if not law.linear]
-            yield f"material.{names[0]} is not linear, and this PETSc has no MUMPS for that"
+        if lagged(problem) and not bordered.reachable():
+            yield from _no_mumps(problem)
         if problem.rigid.faces:
             yield "a face follows a rigid body"
         for step in task.steps:
@@ -72,8 +79,11 @@ class CondensedStrategy:
     def costs(self, task: Task) -> Iterator[str]:
         """Why it would not pay."""
         problem = task.problem
-        if not problem.linear and problem.unknowns < LEAST_LAGGED:
+        if lagged(problem) and problem.unknowns < LEAST_LAGGED * problem.comm.size:
             yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
+        if problem.comm.size > 1:
+            yield from _costs_on_several(task)
+            return
         if problem.linear and problem.check_supported(task.steps) and not _touches(problem):
             yield "contact alone will hold a body, and does not touch it yet"
         touched = touched_nodes(problem, task.steps)
@@ -100,11 +110,53 @@ class CondensedStrategy:
         kept: Arrays,
     ) -> CondensedNewton | LaggedNewton:
         """Newton's method on the contact unknowns; on all of them where bodies are not linear."""
-        if not task.problem.linear:
+        if lagged(task.problem):
             task.problem.predict_contact(task.steps)
             return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
+
+
+def lagged(problem: Problem) -> bool:
+    """Whether corrections are those of a `LaggedNewton`."""
+    return not problem.linear or bool(problem.comm.size > 1)
+
+
+def _not_on_several(problem: Problem) -> Iterator[str]:
+    """What keeps several processes from it."""
+    if problem.layout.unknowns.block != AXES_OF_NODES:
+        yield "with several processes all unknowns have to be displacements in space"
+    if problem.constraints:
+        yield (
+            "nodes follow other nodes (ties, symmetry planes, middle nodes), which it can only "
+            "take on one process"
+        )
+    if problem.bulk.volume is not None:
+        yield "changes of volume are kept apart, which it can only take on one process"
+
+
+def _no_mumps(problem: Problem) -> Iterator[str]:
+    names = [name for name, law in problem.materials.items() if not law.linear]
+    why = f"material.{names[0]} is not linear" if names else "there are several processes"
+    yield f"{why}, and this PETSc has no MUMPS for that"
+
+
+def _costs_on_several(task: Task) -> Iterator[str]:
+    """Why it would not pay or not fit on several processes: the dense matrix is on the first."""
+    problem = task.problem
+    touched = touched_nodes(problem, task.steps)
+    own = problem.layout.unknowns.nodes.dofmap.index_map.size_local
+    count = 3 * int(problem.comm.allreduce(np.count_nonzero(touched[:own])))
+    if count > MOST_CONTACT:
+        yield f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not pay"
+    if count > WIDE * problem.unknowns**POWER:
+        yield (
+            f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
+            "all costs less than their dense matrix"
+        )
+    needed = factor_bytes(problem.unknowns) + 2.0 * DENSE * count**2
+    lack = list(too_large(f"condensing on {count} contact unknowns", needed))
+    yield from problem.comm.bcast(lack)
 
 
 def _lack(task: Task, touched: Flags, what: str) -> Iterator[str]:
