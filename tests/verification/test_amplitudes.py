@@ -268,6 +268,10 @@ def test_a_course_out_of_a_symmetry_plane_is_refused():
     [
         (Course(lambda t: 1.0), "begins at 1 where 0.25 is: prescribe that value in a step before"),
         (Course(lambda t: math.nan), "amplitude at the time 0 is nan, a finite number needed"),
+        (
+            Course(lambda t: 0.125 + 1e300 * t, 2.0),
+            r"amplitude at the time [\d.]+ is [\d.e+]+, which prescribes .*, less than 1e\+150",
+        ),
         (Course(lambda t: 1 / 0), "amplitude at the time 0: .*ZeroDivisionError"),
         (Course(lambda t: "much"), "amplitude at the time 0: .*ValueError"),
     ],

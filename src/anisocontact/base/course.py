@@ -27,6 +27,8 @@ _MOST = 20000
 _WAY = 64
 #: Departure from the straight line of an increment, over the range of the step, that is said.
 _COARSE = 0.25
+#: Size from which on the square of a number is none.
+_LARGEST = 1e150
 
 
 @typed
@@ -106,7 +108,11 @@ class Course:
             raise InputError(f"amplitude at the time {time:g}: {where_failed(error)}") from None
         if not math.isfinite(found):
             raise InputError(f"amplitude at the time {time:g} is {found}, a finite number needed")
-        return self.value * found
+        prescribed = self.value * found
+        if not abs(prescribed) < _LARGEST:
+            text = f"amplitude at the time {time:g} is {found:g}, which prescribes {prescribed:g}"
+            raise InputError(f"{text}, less than {_LARGEST:g} needed")
+        return prescribed
 
 
 @typed
