@@ -127,11 +127,14 @@ class Part:
         Args:
             left: What the first one adds, (c, c); None on the others.
         """
-        own = None if self._lu is None else (self._beside, self._lu.schur)
+        own = None
+        if self._lu is not None:
+            own = self._beside, self._lu.schur
+            del self._lu.schur  # gives the memory back
         if left is None:
             self._comm.send(own, 0)
             return None
-        total = np.asfortranarray(left.toarray(), dtype=np.float32)
+        total: Reals = left.astype(np.float32).toarray(order="F")
         for process in range(self._comm.size):
             found = self._comm.recv(source=process) if process else own
             if found is not None:
