@@ -13,7 +13,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from tests.verification.pairs_on_ranks import CASES, FOLLOWING, TOLERANCE, WITH_MULTIPLIERS
+from tests.verification.pairs_on_ranks import (
+    CASES,
+    FOLLOWING,
+    TOLERANCE,
+    WITH_MULTIPLIERS,
+    totals,
+)
 
 from anisocontact.solver import Solver
 
@@ -29,10 +35,7 @@ def run(name: str, folder: Path, strategy: str) -> None:
     notes: list[str] = []
     rows = []
     for accepted in solver.run(on_note=notes.append):
-        wrench = [np.concatenate(pair) for pair in accepted.resultants.values()]
-        reactions = list(accepted.reactions.values())
-        energies = np.array(list(accepted.energies.values()))
-        rows.append(np.concatenate([energies, *wrench, *reactions]))
+        rows.append(totals(accepted))
     found = [match for note in notes if (match := _COUNTS.match(note))]
     factors, corrections = map(int, found[-1].groups()) if found else (0, 0)
     if problem.comm.rank == 0:

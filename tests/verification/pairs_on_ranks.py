@@ -33,7 +33,7 @@ from anisocontact.results.checkpoint import (
 )
 from anisocontact.results.files import Disk
 from anisocontact.rigid import MovingSurface, RigidBody
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import Accepted, Problem, Solver, Step
 
 #: Accepted increments before a run is stopped.
 STOP = 2
@@ -307,6 +307,13 @@ def _save(path: Path, solver: Solver, **more: Any) -> None:
         np.savez(path, facets=facets, had=had, **arrays, **more)
 
 
+def totals(accepted: Accepted) -> np.ndarray:
+    """Energies, forces and moments of contacts, and reactions of an increment."""
+    wrench = [np.concatenate(pair) for pair in accepted.resultants.values()]
+    energies = np.array(list(accepted.energies.values()))
+    return np.concatenate([energies, *wrench, *accepted.reactions.values()])
+
+
 def run(name: str, folder: Path, mode: str) -> None:
     """One of `CASES`."""
     problem, steps = CASES[name]()
@@ -321,10 +328,7 @@ def run(name: str, folder: Path, mode: str) -> None:
         solver.restore(distribute(stored, problem.model, solver.persistent()))
     rows = []
     for count, accepted in enumerate(solver.run(), 1):
-        wrench = [np.concatenate(pair) for pair in accepted.resultants.values()]
-        reactions = list(accepted.reactions.values())
-        energies = np.array(list(accepted.energies.values()))
-        rows.append(np.concatenate([energies, *wrench, *reactions]))
+        rows.append(totals(accepted))
         if mode == "stop" and count == STOP:
             stop, disk = folder / f"{name}-{ranks}-stop", Disk(problem.comm)
             disk.write(stop.mkdir)

@@ -12,9 +12,10 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from tests.verification.test_pairs_on_ranks import start
+
 from anisocontact.solver.strategies.condensed import bordered
 
-ROOT = Path(__file__).parents[2]
 #: At points and at slave nodes, linear and at finite strain, order 1 and 2, with a law in Python, a
 #: free rigid body, multipliers, a surface that meets itself, and symmetry planes along axes.
 NAMES = (
@@ -41,19 +42,10 @@ pytestmark = [
 ]
 
 
-def _solve(ranks: int, folder: Path, strategy: str, *names: str) -> None:
-    """Solve on so many processes; one that hangs fails."""
-    script = [sys.executable, "-m", "tests.verification.condensed_on_ranks"]
-    command = ["mpirun", "-n", str(ranks), *script, str(folder), strategy, *names]
-    command = ["timeout", "-k", "5", "600", *command]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
 def _compared(folder: Path, ranks: int, names: tuple[str, ...]) -> dict[str, float]:
     """Corrections for each factorisation, by case; answers are those of one process."""
-    _solve(1, folder, "direct", *names)
-    _solve(ranks, folder, "condensed", *names)
+    start(1, folder, "direct", *names, script="condensed_on_ranks")
+    start(ranks, folder, "condensed", *names, script="condensed_on_ranks")
     found = {}
     for name in names:
         with np.load(folder / f"{name}-1-direct.npz") as one:
@@ -83,7 +75,7 @@ def test_three_processes(tmp_path: Path) -> None:
     """Parts that touch and parts that do not; some are as small as the border between them.
 
     Requirement: the answers of `direct` on one process. Source: the same equations. Tolerance
-    1e-11: residuals are solved to 1e-13, sums are in another order; 4e-13 measured.
+    1e-11: residuals are solved to 1e-13, sums are in another order; 7e-13 measured.
     """
     _compared(tmp_path, 3, NAMES)
 

@@ -35,7 +35,7 @@ from anisocontact.solver.strategies.condensed import (
     interior,
     lagged,
     lagged_newton,
-    old_tangent,
+    lagged_preconditioner,
 )
 from anisocontact.solver.strategies.condensed.factor import singular
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
@@ -184,7 +184,7 @@ def test_couplings_that_are_in_the_border_need_no_new_factor() -> None:
     assert _corrected(problem, factor, 1e-9) < 1e-5
     assert factor.factors == 1
     kept = factor._factor
-    assert isinstance(kept, old_tangent.OneFactor)
+    assert isinstance(kept, lagged_preconditioner.BorderedPreconditioner)
     assert kept._touched is not None
     kept._touched.unknowns = kept._touched.unknowns[3:]
     factor.outgrow()
@@ -205,7 +205,7 @@ def test_a_factor_in_single_precision_that_is_not_enough(monkeypatch: pytest.Mon
             monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)
         return factor
 
-    monkeypatch.setattr(old_tangent, "BorderedLU", made)
+    monkeypatch.setattr(lagged_preconditioner, "BorderedLU", made)
     problem = _on_plane()
     problem.set_load_factor(1.0, 1.0)
     factor = LaggedFactor(problem, lambda _: None)
@@ -223,7 +223,7 @@ def test_where_no_kept_factor_serves(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(factor, "solution", lambda b: 0.0 * b)  # of no use
         return factor
 
-    monkeypatch.setattr(old_tangent, "BorderedLU", made)
+    monkeypatch.setattr(lagged_preconditioner, "BorderedLU", made)
     problem = _on_plane()
     problem.set_load_factor(1.0, 1.0)
     factor = LaggedFactor(problem, lambda _: None)

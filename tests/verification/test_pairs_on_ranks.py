@@ -26,10 +26,10 @@ NAMES = ("facet", "xi", "feature", "entity", "edge", "position", "normal")
 ON_FACET = tuple(f"projection.{name}" for name in NAMES)
 
 
-def start(ranks: int, folder: Path, mode: str, *cases: str) -> None:
-    """Solve on so many processes; one that hangs fails."""
-    script = [sys.executable, "-m", "tests.verification.pairs_on_ranks"]
-    command = ["mpirun", "-n", str(ranks), *script, str(folder), mode, *cases]
+def start(ranks: int, folder: Path, mode: str, *cases: str, script: str = "pairs_on_ranks") -> None:
+    """Solve on so many processes by a script beside this one; one that hangs fails."""
+    module = [sys.executable, "-m", f"tests.verification.{script}"]
+    command = ["mpirun", "-n", str(ranks), *module, str(folder), mode, *cases]
     command = ["timeout", "-k", "5", "600", *command]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

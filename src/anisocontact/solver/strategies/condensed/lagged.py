@@ -12,8 +12,11 @@ from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.border import PARTS
 from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
 from anisocontact.solver.strategies.condensed.krylov import gmres
+from anisocontact.solver.strategies.condensed.lagged_preconditioner import (
+    BorderedPreconditioner,
+    LaggedPreconditioner,
+)
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
-from anisocontact.solver.strategies.condensed.old_tangent import OldTangent, OneFactor
 from anisocontact.solver.strategies.condensed.substructures import Substructures
 from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
 from anisocontact.solver.strategies.once import once
@@ -36,8 +39,8 @@ class LaggedFactor:
     """Solves with the tangent J of now by GMRES, preconditioned from the right.
 
     The preconditioner is an earlier tangent, factorised once, whose border has the contacts of now,
-    see `OldTangent`. All that changes at once is in it, and what it lacks is the change of the
-    bodies since. Where volume is kept apart it is the mixed form that is preconditioned, see
+    see `LaggedPreconditioner`. All that changes at once is in it, and what it lacks is the change
+    of the bodies since. Where volume is kept apart it is the mixed form that is preconditioned, see
     `MixedForm`.
 
     `FactorRenewal` says when a new factor pays. All unknowns are factorised for a correction alone
@@ -58,7 +61,9 @@ class LaggedFactor:
     ) -> None:
         self._problem, self._note = problem, once(note)
         self._several = problem.comm.size > 1
-        self._factor: OldTangent = Substructures(problem) if self._several else OneFactor(problem)
+        self._factor: LaggedPreconditioner = (
+            Substructures(problem) if self._several else BorderedPreconditioner(problem)
+        )
         self._slope = scipy.sparse.csr_array((0, 0))
         self._single, self._due, self._made = True, True, False
         self._renewal, self._backoff = FactorRenewal(_LAST, _MARGIN), KrylovBackoff()

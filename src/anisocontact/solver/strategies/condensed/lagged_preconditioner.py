@@ -1,4 +1,4 @@
-"""An old tangent with the contacts of now, factorised on one process."""
+"""A lagged preconditioner: an old tangent with the contacts of now; on one process, and for all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from anisocontact.solver.terms.term import SingularError
 _MATRIX, _UNKNOWNS, _BORDER = "lagged.matrix", "lagged.unknowns", "lagged.border."
 
 
-class OldTangent(Protocol):
+class LaggedPreconditioner(Protocol):
     """`P = J_old + C - C_old`, C what acts on the unknowns that contact can couple.
 
     Vectors are those of the unknowns that this process owns; all calls are collective.
@@ -77,8 +77,8 @@ class OldTangent(Protocol):
         ...
 
 
-class OneFactor:
-    """An `OldTangent` on one process, by one `BorderedLU`.
+class BorderedPreconditioner:
+    """A `LaggedPreconditioner` on one process, by one `BorderedLU`.
 
     Args:
         problem: The problem.

@@ -50,8 +50,9 @@ class OwnRows:
         earlier = inside[columns] & (columns < self.first)
         inside[self._shared(row[earlier])] = False
         own = inside[self.first : self.first + self.matrix.shape[0]]
-        alone = bool(inside[columns[own[row]]].all())
-        inside[self._shared(np.flatnonzero(own)[:alone])] = False
+        alone = inside[columns[own[row]]].all()
+        first_inside = np.flatnonzero(own)[:1] if alone else np.zeros(0, dtype=np.int64)
+        inside[self._shared(first_inside)] = False
         return np.flatnonzero(~inside)
 
     def of(self, unknowns: Ints) -> Sparse:
@@ -67,7 +68,7 @@ class OwnRows:
         return np.concatenate(self.comm.allgather(own))
 
 
-class Part:
+class Subdomain:
     """What one process eliminates, and what it leaves on the border; all calls are collective.
 
     Args:
