@@ -61,7 +61,7 @@ def rows_of(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
 
 def _given(x: object, name: str) -> Floats:
     """What was given as numbers."""
-    a = _real(x)
+    a = real(x)
     if a is None:
         text = " ".join(f"{x!r:.60}".split())
         raise InputError(f"{text} given, an array of real numbers needed", field=name)
@@ -95,7 +95,7 @@ def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
         >>> answered([1, 2], (2,), "the law Creeping", "energy").tolist()
         [1.0, 2.0]
     """
-    found = _real(x)
+    found = real(x)
     if found is None:
         text = " ".join(f"{who} returned {x!r:.60}".split())
         raise InputError(f"{text}, an array of real numbers needed", field=part)
@@ -105,11 +105,18 @@ def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
     return found
 
 
-def _real(x: object) -> Floats | None:
-    """An array of real numbers; None if it is something else."""
+def real(x: object) -> Floats | None:
+    """An array of real numbers; None if it is something else.
+
+    Example:
+        >>> real([1, True]), real([None]), real("2")
+        (array([1., 1.]), None, None)
+    """
     try:
         given = np.asarray(x)
-        return np.asarray(given, dtype=np.float64) if given.dtype.kind in _REAL else None
+        if given.dtype.kind not in _REAL or (given.dtype.kind == "O" and None in given.ravel()):
+            return None  # NumPy takes None for a number that is none
+        return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
         return None
 

@@ -6,10 +6,12 @@ import ast
 import importlib.util
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
+
+from anisocontact.base.errors import InputError
 
 
 def module_of(path: Path) -> ModuleType:
@@ -72,6 +74,31 @@ def where_failed(error: BaseException) -> str:
         at = (frames[-1].filename, frames[-1].lineno)
     said = " ".join(f"{type(error).__name__}: {getattr(error, 'msg', None) or error}".split())
     return said if at[0] is None else f"{Path(at[0]).name}, line {at[1]}: {said}"
+
+
+def called[T](function: Callable[..., T], *arguments: object, who: str, field: str = "") -> T:
+    """What a function of somebody's returns.
+
+    Args:
+        function: The function.
+        *arguments: What it is given.
+        who: What messages call it.
+        field: Where it was given, for messages.
+
+    Raises:
+        InputError: It failed; one that it raised itself is a line already.
+
+    Example:
+        >>> called(lambda x: 1 / x, 0, who="load")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: load failed: ...: ZeroDivisionError: division by zero
+    """
+    try:
+        return function(*arguments)
+    except InputError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise InputError(f"{who} failed: {where_failed(error)}", field) from error
 
 
 def _readable(frames: list[traceback.FrameSummary]) -> list[traceback.FrameSummary]:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats, Locals
+from anisocontact.base.arrays import real
 from anisocontact.base.errors import InputError
+from anisocontact.base.python_file import called
 from anisocontact.base.typed import typed
 
 #: What a quantity belongs to.
@@ -72,7 +75,8 @@ def register_quantity[T: Callable[[Any], Any]](
         A decorator.
 
     Raises:
-        InputError: There is such a quantity, or nothing that it could belong to.
+        InputError: There is such a quantity, or nothing that it could belong to; in a run, the
+            function failed, or returned something else than real numbers, one or a vector for each.
 
     Example:
         >>> register_quantity("gap", "slave point", "length", "once more")
@@ -85,10 +89,32 @@ def register_quantity[T: Callable[[Any], Any]](
         raise InputError(f"{name!r} of a {at} is registered already", "quantity")
 
     def register(values: T) -> T:
-        _TABLE[at, name] = OutputQuantity(name, at, unit, doc, values)
+        checked = partial(_answer, values, at, f"quantity {name!r} of a {at}")
+        _TABLE[at, name] = OutputQuantity(name, at, unit, doc, checked)
         return values
 
     return register
+
+
+def _answer(values: Callable[[Any], Any], at: str, who: str, of: Any) -> Floats:
+    """What a function of the user's has made of what is there, as files can have it.
+
+    Raises:
+        InputError: It failed, or returned something else than real numbers, one or a vector for
+            each.
+    """
+    found = real(called(values, of, who=who))
+    if found is None:
+        raise InputError("something else than real numbers returned", who)
+    if at in (CONTACT, RIGID):
+        fits, needed = found.ndim < 2 and found.size > 0, "() or (k,)"
+    else:
+        count, width = len(of.displacement if at == NODE else of.numbers), found.shape[1:]
+        fits = found.shape[:1] == (count,) and len(width) < 2 and 0 not in width
+        needed = f"({count},) or ({count}, k)"
+    if not fits:
+        raise InputError(f"an array of shape {found.shape} returned, {needed} needed", who)
+    return found
 
 
 def quantities(*at: str) -> tuple[OutputQuantity, ...]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact.base.arrays import answered
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.until import Measure, Until
+from anisocontact.base.python_file import called
+from anisocontact.base.until import Until
 from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
@@ -225,8 +228,7 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
         contact, so = _contact(problem, until, field), _STATES[until.event]
         return lambda x: 1.0 if so(contact.counts()) else -1.0
     if until.measure is not None:
-        of_problem = until.measure
-        return lambda x: _of_problem(problem, of_problem, x)
+        return lambda x: _of_problem(problem, until, x, field)
     direction = None
     if until.along is not None:
         direction = np.array(until.along) / np.linalg.norm(until.along)
@@ -245,11 +247,22 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
     return lambda x: of(_bulk(problem, x).reactions(x).get(group, np.zeros(3)))
 
 
-def _of_problem(problem: Problem, measure: Measure, x: Vec | None) -> float:
-    """A function of the problem at a trial of all unknowns, or at the accepted state."""
+def _of_problem(problem: Problem, until: Until, x: Vec | None, field: str) -> float:
+    """A function of the problem at a trial of all unknowns, or at the accepted state.
+
+    Raises:
+        InputError: It failed, or returned something else than a finite number.
+    """
+    if until.measure is None:
+        return 0.0
     if x is not None:
         problem.evaluate_at(x)
-    return float(measure(problem, x is not None))
+    field = f"{field}.measure"
+    found = called(until.measure, problem, x is not None, who=until.name, field=field)
+    value = float(answered(found, (), until.name, field))
+    if not math.isfinite(value):
+        raise InputError(f"{until.name} returned {value}, a finite number needed", field)
+    return value
 
 
 def _bulk(problem: Problem, x: Vec | None) -> Reduction:
