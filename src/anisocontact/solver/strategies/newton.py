@@ -402,4 +402,6 @@ class Newton:
             reasons.DIVERGED_DTOL: "the Newton iteration diverged, residual {r:.1e}",
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")
-        return text.format(n=self.snes.getIterationNumber(), r=last)
+        text = text.format(n=self.snes.getIterationNumber(), r=last)
+        norm = self.snes.getFunctionNorm()
+        return ", ".join(filter(None, [text, self._problem.balance.explained(norm)]))

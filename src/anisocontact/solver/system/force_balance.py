@@ -62,6 +62,7 @@ class ForceBalance:
         load: Of these, the loads.
         fields: Of a mixed problem the balance of each field, the displacement first.
         reached: Whether displacements are where they are prescribed, see `prescribed_reached`.
+        rounded: Residual that floating point leaves however small the loads are, force.
     """
 
     residual: Floats
@@ -72,11 +73,25 @@ class ForceBalance:
     load: Floats
     fields: tuple[FieldBalance, ...] = ()
     reached: bool = True
+    rounded: float = 0.0
 
     @classmethod
     def none(cls, owned: int) -> ForceBalance:
         """No forces at all."""
         return cls(np.zeros(owned), 0.0, 0.0, 0.0, np.zeros(owned), np.zeros(owned))
+
+    def explained(self, norm: float) -> str:
+        """What a residual may come from where loads are too small for it; empty if not that.
+
+        Args:
+            norm: Of the residual, force.
+        """
+        if norm > self.rounded or self.rounded <= self.round_off:
+            return ""
+        return (
+            "which may be rounding of the forces inside bodies, beside which loads are small: "
+            "larger loads, or a material at small strain"
+        )
 
     def of_fields(self, norm: float) -> tuple[FieldBalance, ...]:
         """The balance of each field, where the residual as a whole has a norm."""
@@ -105,8 +120,12 @@ class Magnitudes:
     @property
     def round_off(self) -> float:
         """As of `ForceBalance`."""
-        rounded = ROUND_OFF * self.stiff
-        return min(rounded, LOAD_SHARE * self.load) if self.load > 0.0 else rounded
+        return min(self.rounded, LOAD_SHARE * self.load) if self.load > 0.0 else self.rounded
+
+    @property
+    def rounded(self) -> float:
+        """As of `ForceBalance`."""
+        return ROUND_OFF * self.stiff
 
 
 def closed(
@@ -141,8 +160,9 @@ def closed(
     if correction is not None:
         residual = residual - correction
     outside, load = forces or (np.zeros(0), np.zeros(0))
+    scale, round_off = sizes.force_scale, sizes.round_off
     return ForceBalance(
-        residual, norm, sizes.force_scale, sizes.round_off, outside, load, fields, reached
+        residual, norm, scale, round_off, outside, load, fields, reached, sizes.rounded
     )
 
 

@@ -1,0 +1,60 @@
+"""Loads beside which the rounding of the forces inside a body is no more small."""
+
+import subprocess
+import sys
+
+import pytest
+
+CASE = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [1, 1, 1]
+[material.block]
+model = "{model}"
+E = 1000
+nu = 0.3
+[[step]]
+name = "pull"
+increments = 1
+displacement = {{ "block.bottom" = {{ x = 0, y = 0, z = 0 }} }}
+traction = {{ "block.top" = {{ x = {load}, z = {load} }} }}
+[output]
+pictures = false
+"""
+SMALL = "rounding of the forces inside bodies, beside which loads are small: larger loads, or"
+
+
+def ends_with(folder, model, load):
+    """Exit code, and the last lines that the command prints."""
+    (folder / "case.toml").write_text(CASE.format(model=model, load=load))
+    run = subprocess.run(
+        [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out"],
+        cwd=folder, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    return run.returncode, run.stdout + run.stderr
+
+
+def test_rounding_beside_small_loads_is_named(tmp_path):
+    """Loads of 1e-11 E leave rounding of stresses of the size of E: the run says that it is this.
+
+    Requirement: no run ends without a cause that its user can do something about.
+    """
+    code, said = ends_with(tmp_path, "neo-hookean", 1e-8)
+    assert code == 3
+    assert SMALL in said.splitlines()[-2]
+
+
+@pytest.mark.parametrize(("model", "load"), [("linear-elastic", 1e-8), ("neo-hookean", 1e-5)])
+def test_loads_that_are_large_enough_are_carried(tmp_path, model, load):
+    """A linear body carries any load; one at finite strain 1e-8 E without a cut."""
+    code, said = ends_with(tmp_path, model, load)
+    assert code == 0
+    assert "cut from" not in said
+
+
+def test_other_causes_are_not_taken_for_rounding(tmp_path):
+    """A load that turns cells inside out is no small one."""
+    code, said = ends_with(tmp_path, "st-venant-kirchhoff", -1e4)
+    assert code == 3
+    assert "rounding" not in said
