@@ -177,13 +177,14 @@ void update_each(const FacetInterface& h, const Input& q, Output& out, const Put
 }
 
 /// Residual and tangent of each point by itself: rows of the slave's and the master's nodes, columns
-/// of these and of the facet on which the history was committed.
+/// of these and of the facet on which the history was committed. Beside them what slip makes of the residual.
 template <bool tangent>
 nb::dict update(const FacetInterface& h, const Input& q) {
   const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width, n = q.points;
   const std::size_t rows = 3 * (ks + km), columns = rows + 3 * km;
   Output out(n, q.batch);
-  Array<double> residual({n, rows}), matrix({tangent ? n : 0, rows, columns}, h.pool);
+  Array<double> residual({n, rows}), matrix({tangent ? n : 0, rows, columns}, h.pool),
+      by_slip({tangent ? n : 0, 3, rows});
   Array<std::int32_t> nodes({n, ks + 2 * km}, unset);
   std::fill_n(nodes.data, n * (ks + 2 * km), -1);
   const auto put = [&](std::size_t p, const kernel::PairResult& r,
@@ -202,6 +203,7 @@ nb::dict update(const FacetInterface& h, const Input& q) {
       constexpr std::size_t most = 3 * 2 * kernel::most_nodes;
       std::array<double, most * most> own, earlier;
       kernel::add_tangent(r, d, s.shapes, {own.data(), true}, {earlier.data(), true});
+      kernel::add_slip_residuals(d, s.shapes, by_slip.data + 3 * p * rows);
       double* to = matrix.data + p * rows * columns;
       for (std::size_t i = 0; i < rows; ++i) {
         to = std::copy_n(own.data() + i * rows, rows, to);
@@ -214,31 +216,36 @@ nb::dict update(const FacetInterface& h, const Input& q) {
   d["nodes"] = nodes.array;
   d["residual"] = residual.array;
   d["tangent"] = matrix.array;
+  d["by_slip"] = by_slip.array;
   return d;
 }
 
 /// Derivatives of the tractions of points that lie on the first node of their facets, with areas of one:
-/// columns of the nodes of the slave, of the master and of the facet on which the history was committed.
+/// columns of the nodes of the slave, of the master and of the facet on which the history was committed;
+/// and those by slip.
 template <bool tangent>
 nb::dict tractions(const FacetInterface& h, const Input& q) {
   const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width, n = q.points;
   const std::size_t near = 3 * (ks + km), columns = near + 3 * km;
   Output out(n, q.batch);
-  Array<double> slopes({tangent ? n : 0, 3, columns}, h.pool);
+  Array<double> slopes({tangent ? n : 0, 3, columns}, h.pool), by_slip({tangent ? n : 0, 3, 3});
   update_each<tangent>(
       h, q, out,
       [&](std::size_t p, const kernel::PairResult& r, [[maybe_unused]] const kernel::PairSlopes& by,
           const Seen& s, std::int64_t) {
         if constexpr (tangent) {
           double* const to = slopes.data + 3 * p * columns;
-          if (touches(r))
+          if (touches(r)) {
             kernel::traction_slopes(r, by, s.shapes, to);
-          else
+            put9(by_slip.data, p, by.by_slip);
+          } else {
             std::fill_n(to, 3 * columns, 0.0);
+          }
         }
       });
   nb::dict d = out.result();
   d["slopes"] = slopes.array;
+  d["by_slip"] = by_slip.array;
   return d;
 }
 

@@ -16,7 +16,6 @@ struct Output {
   std::size_t ks, km;
   Array<std::uint8_t> state;
   Array<double> traction, normal, adhesion, friction, area, stiffness;
-  Array<double> by_held;    ///< of the tractions by slip along held directions, or none
   Array<double> on_master;  ///< forces on the nodes of the facet, of points that touch
   Array<std::int8_t> failure;
   std::vector<std::uint8_t> touching;  ///< of each point, whether it has forces
@@ -31,7 +30,6 @@ struct Output {
         friction({n, 2, 3}, unset),
         area({n}, unset),
         stiffness({n}, unset),
-        by_held({b.hits.held == nullptr ? 0 : n, 3, 3}, unset),
         on_master({n, b.mesh.width, 3}, unset),
         failure({n}, unset),
         touching(n) {}
@@ -49,9 +47,6 @@ struct Output {
     failure.data[p] = static_cast<std::int8_t>(r.failure);
     area.data[p] = s.shapes.area.value();
     stiffness.data[p] = d != nullptr && touches(r) ? size_of_block(p, *d, s) : 0.0;
-    if (s.point.held != nullptr && d != nullptr)
-      for (std::size_t i = 0; i < 3; ++i)
-        put3(by_held.data, 3 * p + i, touches(r) ? d->by_held[i] : Vec3<double>::Zero());
     touching[p] = touches(r) ? 1 : 0;
     if (touches(r)) put_on_master(p, r, s.shapes.master);
   }
@@ -66,7 +61,6 @@ struct Output {
     d["failure"] = failure.array;
     d["area"] = area.array;
     d["stiffness"] = stiffness.array;
-    d["by_held"] = by_held.array;
     return d;
   }
 

@@ -83,8 +83,8 @@ nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, d
   const OwnInput own{own_reference, own_reference_tangents, own_tangents};
   const std::size_t m = with_tangent ? n : 0, own_rows = own.given() ? m : 0;
   Array<std::uint8_t> next({n, sizeof(PointState)});
-  Array<double> traction({n, 3}), tangent({m, 3, 3}), own_tangent({own_rows, 2, 3, 3}),
-      normal({n, 3}), adhesion({n, 2, 3}), friction({n, 2, 3});
+  Array<double> traction({n, 3}), tangent({m, 3, 3}), by_slip({m, 3, 3}),
+      own_tangent({own_rows, 2, 3, 3}), normal({n, 3}), adhesion({n, 2, 3}), friction({n, 2, 3});
   Array<std::int8_t> failure({n});
   {
     nb::gil_scoped_release free;
@@ -105,7 +105,10 @@ nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, d
         put3(friction.data, 2 * i + k, r.friction_axes[k]);
         if (own_rows > 0) put9(own_tangent.data, 2 * i + k, r.d_slave_tangents[k]);
       }
-      if (with_tangent) put9(tangent.data, i, r.tangent);
+      if (with_tangent) {
+        put9(tangent.data, i, r.tangent);
+        put9(by_slip.data, i, r.by_slip);
+      }
       failure.data[i] = static_cast<std::int8_t>(r.failure);
     });
   }
@@ -113,6 +116,7 @@ nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, d
   d["state"] = next.array;
   d["traction"] = traction.array;
   d["tangent"] = tangent.array;
+  d["by_slip"] = by_slip.array;
   d["tangent_own"] = own_tangent.array;
   d["normal"] = normal.array;
   d["adhesion_axes"] = adhesion.array;

@@ -152,13 +152,13 @@ def test_multipliers_converge_quadratically(meshed: bool) -> None:
     assert np.median(orders) > 1.8
 
 
-def _ironed() -> list[Accepted]:
+def _ironed(friction: Friction, mortar: bool) -> list[Accepted]:
     """Press a soft slab from below onto a cylinder at rest, then draw it along."""
     model = build_box({"slab": BoxSpec((0, 0, 0), (4, 0.5, 1), (16, 1, 4))})
     die = make_surface("cylinder", point=(2.5, 0, 1.6), axis=(0, 1, 0), radius=0.6)
-    laws = NormalLaw(penalty=16.0), Adhesion(stiffness=(16.0, 16.0)), Friction(coefficients=0.3)
+    laws = NormalLaw(penalty=16.0), Adhesion(stiffness=(16.0, 16.0)), friction
     contact = Contact(
-        model, "slab.top", Interface(die, *laws), augmentation=Augmentation(), mortar=False
+        model, "slab.top", Interface(die, *laws), augmentation=Augmentation(), mortar=mortar
     )
     soft = make_material("neo-hookean", E=1.0, nu=0.4)
     problem = Problem(model, {"slab": soft}, [contact])
@@ -167,16 +167,32 @@ def _ironed() -> list[Accepted]:
     return list(Solver(problem, [press, iron]).run())
 
 
-def test_slip_on_a_curved_surface_converges_quadratically() -> None:
+@pytest.mark.parametrize(
+    ("sliding", "mortar"),
+    [
+        ("isotropic", False),
+        ("isotropic", True),
+        ("maximum-dissipation", True),
+        ("linear", True),
+        ("coaxial", False),
+    ],
+)
+def test_slip_on_a_curved_surface_converges_quadratically(sliding: str, mortar: bool) -> None:
     """Points that slide far along a cylinder: a small residual falls to a hundredth at once.
 
     Source: Newton's method: below 1e-3 of the forces a square is less than a hundredth of them,
     were its constant ten; the elimination of multipliers leaves 1e-4. A derivative that takes the
-    way out of a violation for one along the surface leaves N / (R eps), here a quarter, with N the
-    pressure, R the radius and eps the penalty that suits the body.
+    way out of a violation for one along the surface, on which normal and axes of friction turn,
+    leaves N / (R eps), here a quarter, with N the pressure, R the radius and eps the penalty that
+    suits the body. Where axes are projections of two vectors the angle between them changes along
+    the surface, and the ellipse with it.
     """
+    friction = Friction(coefficients=0.3)
+    if sliding != "isotropic":
+        crossed = make_directions("from-vectors", first=(1, 1, 0), second=(-1, 1, 0))
+        friction = Friction(coefficients=(0.3, 0.15), directions=crossed, sliding_rule=sliding)
     left = []
-    for accepted in _ironed():
+    for accepted in _ironed(friction, mortar):
         known = accepted.residuals
         left += [b / a for a, b in pairwise(known) if 1e-6 < a < 1e-3 and b < a]
     assert len(left) >= 3

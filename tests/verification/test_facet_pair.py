@@ -18,6 +18,7 @@ import pytest
 from anisocontact import _core
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
+from anisocontact.contact.plane_axes import unit_normal
 from anisocontact.interface import STATE, ContactLaw, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 
@@ -210,6 +211,43 @@ def test_tangent_of_every_pair(slave: str, master: str, status: str) -> None:
     assert as_state(s.update(s.now)["state"])["status"][0] == STATUS[status]
     e = _errors(s, (4e-4, 2e-4))
     assert 3.6 < e[0] / e[1] < 4.4
+
+
+@pytest.mark.parametrize("status", ["stick", "slip"])
+@pytest.mark.parametrize("master", TOPOLOGIES)
+def test_slip_of_a_point_that_stays(master: str, status: str) -> None:
+    """What slip and gap make of the nodal forces at one place: the same order.
+
+    Source: friction follows slip through the trial force alone, the stored one less the stiffness
+    times the slip, and the pressure the gap less its offset: these are changed instead.
+    """
+    s = make("quad4", master, "maximum-dissipation", status)
+    r = s.update(s.now)
+    km, axes = len(NODES[master]), r["adhesion_axes"][0]
+    ahead = [(1, 0), (0, 1)]
+    before = np.array([shape(master, s.state["xi"][0], k) @ s.now[4 + km :] for k in ahead])
+    stiffness = np.einsum("a,ai,aj->ij", (60.0, 25.0), axes, axes)
+    way = np.array([0.4, -0.7, 0.5])
+    gap = r["normal"][0] @ way
+    force = turned(stiffness @ way, r["normal"][0], unit_normal(before[None])[0])
+    errors = []
+    for h in (4e-3, 2e-3):
+        ends = []
+        for k in (h, -h):
+            state = s.state.copy()
+            state["stored"] -= k * before @ force
+            state["offset"] -= k * gap
+            ends.append(replace(s, state=state).update(s.now, False)["residual"][0])
+        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2 * h) - way @ r["by_slip"][0]))
+    if status == "stick":
+        assert max(errors) < 1e-9 * 60.0
+    else:
+        assert 3.6 < errors[0] / errors[1] < 4.4
+
+
+def turned(v: np.ndarray, normal: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """A tangent vector turned with the least rotation from one normal to another."""
+    return np.asarray(v - v @ other / (1.0 + normal @ other) * (normal + other))
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -74,7 +74,10 @@ class AnalyticAnswer:
         """As of `Answer`."""
         stiff = other.snapshot.response
         response = replace(
-            self.snapshot.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave
+            self.snapshot.response,
+            tangent=stiff.tangent,
+            tangent_slave=stiff.tangent_slave,
+            tangent_slip=stiff.tangent_slip,
         )
         return replace(
             self, snapshot=replace(self.snapshot, response=response), own_stiffness=stiffness
@@ -305,9 +308,8 @@ class AnalyticLinear:
         turn = np.eye(3) if master.body is None else master.body.trial.rotation
         self._then, self._slave = master.displaced(), master.slave_tangents()
         self._tangent = turn.T @ response.tangent @ turn
-        self._traction, self._normal = response.traction @ turn, response.normal @ turn
-        self._jet = master.interface.surface.jet(response.state["xi"])
         self._by_slave = turn.T @ response.tangent_slave @ turn
+        self._by_slip = turn.T @ response.tangent_slip @ turn
 
     def change(self) -> Floats | None:
         """As of `Linear`."""
@@ -320,25 +322,8 @@ class AnalyticLinear:
         return np.asarray(change)
 
     def slipped(self, slip: Floats) -> Floats:
-        """As of `Linear`: violations are taken away where the points are.
-
-        Points that move along a curved surface find another normal, with which tractions turn; what
-        is left of a violation is no way along it.
-        """
-        turned = self._turned_normal(slip)
-        along = np.einsum("nd,nd->n", self._traction, self._normal)
-        across = np.einsum("nd,nd->n", self._traction, turned)
-        turns = along[:, None] * turned - across[:, None] * self._normal
-        return np.asarray(np.einsum("nij,nj->ni", self._tangent, slip) - turns)
-
-    def _turned_normal(self, way: Floats) -> Floats:
-        """Change of the normal along ways on the surface, (n, 3) [Weingarten]."""
-        first, second = self._jet.d1, self._jet.d2
-        metric = np.einsum("nid,njd->nij", first, first)
-        bend = np.einsum("nkd,nd->nk", second, self._normal)[:, [[0, 1], [1, 2]]]
-        contra = np.linalg.solve(metric, np.einsum("nid,nd->ni", first, way)[..., None])
-        down = np.linalg.solve(metric, bend @ contra)[..., 0]
-        return np.asarray(-np.einsum("ni,nid->nd", down, first))
+        """As of `Linear`."""
+        return np.asarray(np.einsum("nij,nj->ni", self._by_slip, slip))
 
     def add_force(self, slip: Floats, out: Floats) -> None:
         """As of `Linear`."""

@@ -58,8 +58,7 @@ class Compliant(Semismooth):
         force = step.before.turned_to(step.now, self._remembered(step.before))
         held = step.remembers & (step.answer.pressure > 0.0)[:, None]
         elastic = step.flexed(force) / self.penalties[1]
-        way = step.now.chord(-elastic, step.answer.state["spin"])
-        return state, slip + np.where(held, way, 0.0)
+        return state, slip - np.where(held, elastic, 0.0)
 
     @override
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:

@@ -66,12 +66,14 @@ class ByPoints:
         nodes: That the force depends on, (n, c), -1 for none; the first r are those of the rows.
         residual: Less the force on the nodes of the rows, (n, 3 r).
         tangent: Its derivative, (n, 3 r, 3 c).
+        by_slip: What each component of a slip makes of the residual, (n, 3, 3 r), force/length.
         own: Number of nodes of a slave facet, which come first.
     """
 
     nodes: Locals
     residual: Floats
     tangent: Floats
+    by_slip: Floats
     own: int
 
     @property
@@ -96,10 +98,13 @@ class ByPoints:
     @cached_property
     def by_nodes(self) -> Floats:
         """Derivative of the force of each point by its nodes, (n, 3, 3 c)."""
-        n, _, columns = self.tangent.shape
+        return self.on_slave(self.tangent)
+
+    def on_slave(self, residual: Floats) -> Floats:
+        """Forces of the points, (n, 3, ...), whose residuals are these, (n, 3 r, ...)."""
         # rows of the slave's nodes are shares of the force of the point
-        shares = self.tangent[:, : 3 * self.own].reshape(n, self.own, 3, columns)
-        return np.asarray(-shares.sum(axis=1))
+        shares = residual[:, : 3 * self.own]
+        return np.asarray(-shares.reshape(len(shares), self.own, 3, *shares.shape[2:]).sum(axis=1))
 
 
 @dataclass(frozen=True)
@@ -138,7 +143,10 @@ class FacetAnswer[F: Forces]:
         self: FacetAnswer[ByPoints], other: FacetAnswer[ByPoints], stiffness: Floats
     ) -> Any:
         """As of `Answer`."""
-        forces = replace(self.forces, nodes=other.forces.nodes, tangent=other.forces.tangent)
+        stiff = other.forces
+        forces = replace(
+            self.forces, nodes=stiff.nodes, tangent=stiff.tangent, by_slip=stiff.by_slip
+        )
         return replace(self, forces=forces, stiffness=stiffness)
 
 
@@ -177,7 +185,13 @@ class Evaluation:
         own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
         forces: Forces
         if self.by_points:
-            forces = ByPoints(found["nodes"], found["residual"], found["tangent"], own)
+            forces = ByPoints(
+                nodes=found["nodes"],
+                residual=found["residual"],
+                tangent=found["tangent"],
+                by_slip=found["by_slip"],
+                own=own,
+            )
         else:
             forces = ByFacets(found["force"], found["blocks"])
         return FacetAnswer(gathered, snapshot, found["stiffness"], forces)

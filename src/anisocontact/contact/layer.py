@@ -118,8 +118,8 @@ class Layer:
         """Where to take the derivative, and the slip that a step is to take away.
 
         Returns:
-            State from which the law itself answers as the trial does; displacement of the slave
-            points that would make the trial exact, (n, 3), length.
+            State from which the law itself answers as the trial does; gap and slip that would make
+            the trial exact, (n, 3), length.
         """
         state, slip = step.start.copy(), np.zeros((len(step.start), 3))
         if self._normal is not None:
@@ -131,7 +131,7 @@ class Layer:
         way = self._way.under(self._force - (1.0 - rest) * found)
         self._shift(state, self._histories[1], way, step.now)
         more = (1.0 - rest) * self._way.under(self._force - found)
-        return state, slip + step.now.chord(more, self._spin)
+        return state, slip + more
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
         """State with other multipliers, see `Semismooth.advance`."""

@@ -54,7 +54,11 @@ class Linear(Protocol):
         """Where the nodes have moved since, (n, 3), stress; None where they have not."""
 
     def slipped(self, slip: Floats) -> Floats:
-        """Where slave points move by `slip`, (n, 3), stress."""
+        """With `slip` of points that stay where they are, (n, 3), stress.
+
+        Args:
+            slip: Along the surface, and along the normal of the gap, (n, 3), length.
+        """
 
     def add_force(self, slip: Floats, out: Floats) -> None:
         """Add the forces on the nodes that belong to `slip`, (nodes, 3), force."""

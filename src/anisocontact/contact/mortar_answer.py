@@ -11,7 +11,7 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Locals
-from anisocontact.base.statuses import OPEN, SLIP
+from anisocontact.base.statuses import OPEN, SLIP, STICK
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite, along
 from anisocontact.contact.facet_answer import response_of
 from anisocontact.contact.history import Snapshot
@@ -132,8 +132,8 @@ class MortarAnswer:
         which: Slave nodes in contact, (p,).
         by_nodes: Derivative of their tractions, by the nodes of the planes, (p, 3, 27).
         answered: That of what laws answer, with what supports carry of it.
-        by_held: That of what laws would answer to slip along held directions where nodes slide,
-            (p, 3, 3).
+        by_slip: That by slip, as of `Response.tangent_slip`, (p, 3, 3); along held directions that
+            of what laws would answer where nodes slide, and none where they stick.
     """
 
     at: MortarState
@@ -142,7 +142,7 @@ class MortarAnswer:
     which: Locals
     by_nodes: Floats
     answered: Floats
-    by_held: Floats
+    by_slip: Floats
 
     @classmethod
     def of(
@@ -162,14 +162,14 @@ class MortarAnswer:
         response = response_of({**found, "traction": traction}, failed)
         which = np.flatnonzero(response.status != OPEN).astype(np.int32)
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
-        by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
+        by_nodes, by_slip = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
         if tangent:
-            by_nodes = found["slopes"][which]
-            sliding = response.status[which] == SLIP
-            by_held[sliding] = found["by_held"][which[sliding]]
+            by_nodes, by_slip = found["slopes"][which], found["by_slip"][which]
+            sticking = response.status[which] == STICK
+            by_slip[sticking] -= by_slip[sticking] @ held[which[sticking]]
         stiffness = found["stiffness"] * at.weights.area
         free = by_nodes - held[which] @ by_nodes if held[which].any() else by_nodes
-        return cls(at, snapshot, stiffness, which, free, by_nodes, by_held)
+        return cls(at, snapshot, stiffness, which, free, by_nodes, by_slip)
 
     @cached_property
     def _tangent(self) -> tuple[Floats, Locals, Locals, Floats]:
@@ -242,9 +242,7 @@ class MortarLinear:
         self._answer.add_traction(which, (carried - held @ carried)[..., 0], out)
 
     def _of(self, slip: Floats) -> Floats:
-        by_point = self._answer.answered[:, :, :9].reshape(-1, 3, 3, 3).sum(axis=2)
-        by_point += self._answer.by_held
-        return np.asarray(np.einsum("pij,pj->pi", by_point, slip[self._answer.which]))
+        return np.asarray(np.einsum("pij,pj->pi", self._answer.by_slip, slip[self._answer.which]))
 
     def _supported(self) -> Floats:
         """Change of what supports carry of the tractions answered where nodes slide, (p, 3).

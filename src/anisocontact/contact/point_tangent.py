@@ -58,18 +58,16 @@ class PointTangent:
 
     def slipped(self, slip: Floats) -> Floats:
         """As of `Linear`."""
-        force = self._with_slave(self._answer.forces.by_nodes, slip)
+        force = self._answer.forces.on_slave(self._residual(slip))
         return force / self._answer.snapshot.areas[:, None]
 
     def add_force(self, slip: Floats, out: Floats) -> None:
         """As of `Linear`."""
-        forces, gathered = self._answer.forces, self._answer.gathered
+        gathered = self._answer.gathered
         total = gathered.zeros(out)
-        forces.add_rows(-self._with_slave(forces.tangent, slip), total)
+        self._answer.forces.add_rows(-self._residual(slip), total)
         gathered.hand_back(total, out)
 
-    def _with_slave(self, blocks: Floats, slip: Floats) -> Floats:
-        """What blocks, (n, r, c), make of the same displacement of all nodes of a slave facet."""
-        own = self._answer.forces.own
-        columns = blocks[:, :, : 3 * own].reshape(*blocks.shape[:2], own, 3).sum(axis=2)
-        return np.asarray(np.einsum("nri,ni->nr", columns, slip))
+    def _residual(self, slip: Floats) -> Floats:
+        """What slip makes of the residuals of the points, (n, 3 r), force."""
+        return np.asarray(np.einsum("nkr,nk->nr", self._answer.forces.by_slip, slip))

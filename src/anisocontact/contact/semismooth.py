@@ -120,7 +120,7 @@ class Semismooth(Multipliers):
 
         Returns:
             State from which the law with `ratio` times the penalties answers as the trial does;
-            displacement of the slave points that would make the trial exact, (n, 3), length.
+            gap and slip that would make the trial exact, which move no point, (n, 3), length.
         """
         given, found = self.answers(step)
         ratio, closing = self._ratios(step), np.isfinite(step.closeness)
@@ -162,7 +162,7 @@ class Semismooth(Multipliers):
             way = self.way(step.start, step.answer.gap)[weak] * part[weak]
             more[weak] -= (deep[weak] / way)[:, None] * held[weak]
             state["gap"][astray] = 0.0
-            slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
+            slip += np.where(step.remembers, more, 0.0)
         slip[apart] = 0.0
         return state, slip
 

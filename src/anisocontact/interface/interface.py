@@ -198,6 +198,7 @@ class Interface(CopiedByArguments):
             directions_friction=r["friction_axes"],
             failure=r["failure"],
             tangent_slave=r["tangent_own"],
+            tangent_slip=r["by_slip"],
         )
 
 

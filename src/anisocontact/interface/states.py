@@ -88,6 +88,8 @@ class Response:
         failure: Why a point could not be updated, a code of `FAILURE`, (n,).
         tangent_slave: Change of t with the two tangents of the slave, (n, 2, 3, 3) [stress/length];
             empty where no surface of the slave was given.
+        tangent_slip: Change of t with slip of a point that stays where it is, so that normal and
+            axes do, and along the normal with the gap, (n, 3, 3) [stress/length]; as `tangent`.
 
     Example:
         >>> from anisocontact.interface import Interface
@@ -110,6 +112,7 @@ class Response:
     directions_friction: Floats
     failure: Codes
     tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
+    tangent_slip: Floats = field(default_factory=lambda: np.empty((0, 3, 3)))
 
     @property
     def pressure(self) -> Floats:

@@ -74,6 +74,7 @@ class MovingInterface:
             traction=body.to_space(answer.traction),
             tangent=turn @ answer.tangent @ turn.T,
             tangent_slave=turn @ answer.tangent_slave @ turn.T,
+            tangent_slip=turn @ answer.tangent_slip @ turn.T,
             normal=body.to_space(answer.normal),
             directions_adhesion=body.to_space(answer.directions_adhesion),
             directions_friction=body.to_space(answer.directions_friction),

@@ -335,6 +335,20 @@ inline void add_residual(const PairResult& r, const PairShapes& s, double* out) 
         s.master.dN[b][1] * r.couple[1]);
 }
 
+/// Adds to three residuals what each component of a slip makes of that of a point, see `slip_slopes`.
+inline void add_slip_residuals(const PairSlopes& d, const PairShapes& s, double* out) noexcept {
+  const std::size_t rows = 3 * (s.slave.count + s.master.count);
+  for (Eigen::Index k = 0; k < 3; ++k, out += rows) {
+    PairResult change;
+    change.traction = d.by_slip.col(k);
+    for (std::size_t j = 0; j < 2; ++j)
+      for (std::size_t a = 0; a < 2; ++a)
+        change.couple[j] +=
+            d.along_friction[0][a].dot(change.traction) * d.along_friction[1 + j][a];
+    add_residual(change, s, out);
+  }
+}
+
 /// Adds the tangent of a point. Rows of both blocks: nodes of the slave, then of the master.
 /// Columns of `own`: the same; of `earlier`: the nodes of the facet on which the history was
 /// committed. Without `earlier` that is the master's, or there is none.

@@ -61,27 +61,16 @@ class PairAxes {
 /// and the directions are fixed, so that derivatives are projected alike.
 class HeldDirections {
  public:
-  HeldDirections(const double* held, const ContactPlane& plane) noexcept : any_(held != nullptr) {
-    for (std::size_t b = 0; any_ && b < 2; ++b) {
+  HeldDirections(const double* held, const ContactPlane& plane) noexcept {
+    for (std::size_t b = 0; held != nullptr && b < 2; ++b) {
       const Vec3<double>& t = plane.t[b];
-      held_[b] = {t.dot(Vec3<double>(held)), t.dot(Vec3<double>(held + 3)),
-                  t.dot(Vec3<double>(held + 6))};
-      const Flat along = plane.along(held_[b]);
+      const Flat along = plane.along({t.dot(Vec3<double>(held)), t.dot(Vec3<double>(held + 3)),
+                                      t.dot(Vec3<double>(held + 6))});
       for (std::size_t a = 0; a < 2; ++a) free_[a][b] -= along[a];
     }
   }
   Flat rest(const Flat& u) const noexcept {
     return {free_[0][0] * u[0] + free_[0][1] * u[1], free_[1][0] * u[0] + free_[1][1] * u[1]};
-  }
-  /// Slopes of the traction by slip along h, which multipliers take where supports allow none.
-  void put_slopes(const ContactPlane& plane, const Reaction& r, PairSlopes& d) const noexcept {
-    if (!any_) return;
-    d.by_held.fill(Vec3<double>::Zero());
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Vec3<double> by = plane.spatial(r.slope(Slope::increment, k));
-      for (std::size_t i = 0; i < 3; ++i)
-        d.by_held[i] += by[static_cast<Eigen::Index>(i)] * held_[k];
-    }
   }
   /// Slopes by the increment, from those by what is left of it.
   void pull_back(Reaction& r) const noexcept {
@@ -92,8 +81,6 @@ class HeldDirections {
   }
 
  private:
-  bool any_;
-  std::array<Vec3<double>, 2> held_{Vec3<double>::Zero(), Vec3<double>::Zero()};  ///< of t_a
   std::array<Flat, 2> free_{Flat{1.0, 0.0}, Flat{0.0, 1.0}};
 };
 
@@ -158,7 +145,8 @@ ANISOCONTACT_INLINE void answer_pair(const InterfaceLaw& law, const Law& reacts,
   Reaction r = reacts.evaluate(state, in, tangent);
   if (r.failure != Failure::none) return fail(r.failure);
   if constexpr (tangent) {
-    held.put_slopes(plane, r, *slopes);
+    slopes->by_slip =
+        slip_slopes(r, in.d_pressure * plane.n + plane.spatial(r.slope(Slope::gap, 0)), plane);
     held.pull_back(r);
   }
   advance(law, state, in, r, {plane, frame.facet(), committed, &p.own, moving_axes(law, axes)},

@@ -82,6 +82,16 @@ inline void put_friction_forms(const InterfaceLaw& l, const Reaction& r, const L
   }
 }
 
+/// Slopes of the traction by slip of a point that stays where it is, so that normal and axes do: those
+/// of the law, and along the normal those by the gap.
+inline Eigen::Matrix3d slip_slopes(const Reaction& r, const Vec3<double>& by_gap,
+                                   const ContactPlane& p) {
+  Eigen::Matrix3d by = by_gap * p.n.transpose();
+  for (std::size_t k = 0; k < 2; ++k)
+    by += p.spatial(r.slope(Slope::increment, k)) * p.t[k].transpose();
+  return by;
+}
+
 /// The forms of t_1 . dt, t_2 . dt and n . dt for t = N n + T_a t_a.
 inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction, const Reaction& r,
                                           const ContactFrame& in, const ContactPlane& p) {

@@ -27,8 +27,7 @@ struct PairSlopes {
   std::array<Near, near_forms> near;
   std::array<std::array<Vec3<double>, 2>, acting> along_friction;
   std::array<std::array<Vec3<double>, near_forms>, acting> along;
-  /// Of the traction by a slip along directions that supports hold: rows by rows, where there are any.
-  std::array<Vec3<double>, 3> by_held;
+  Eigen::Matrix3d by_slip;  ///< of the traction, see `slip_slopes`
 
   Near& form(NearForm f, std::size_t k = 0) { return near[static_cast<std::size_t>(f) + k]; }
   Vec3<double>& direction(std::size_t acts, NearForm f, std::size_t k = 0) {

@@ -21,6 +21,7 @@ struct Interface {
 struct PointResult {
   Vec3<double> traction{Vec3<double>::Zero()};       ///< t = N n + T on the slave
   Eigen::Matrix3d tangent{Eigen::Matrix3d::Zero()};  ///< dt/dx
+  Eigen::Matrix3d by_slip{Eigen::Matrix3d::Zero()};  ///< of the traction, see `slip_slopes`
   std::array<Eigen::Matrix3d, 2> d_slave_tangents{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
   Vec3<double> normal{Vec3<double>::Zero()};
   std::array<Vec3<double>, 2> adhesion_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
@@ -149,6 +150,7 @@ PointResult update(const Interface& itf, const Law& reacts, const PointState& st
     if (kept) kept->add(r, plane, friction);
     detail::put_tangent(traction_forms(friction, r, in, plane), plane, here,
                         projection::coordinate_gradient(here, foot, x), out);
+    out.by_slip = slip_slopes(r, out.tangent * plane.n, plane);
   }
   return out;
 }
