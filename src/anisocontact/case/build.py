@@ -5,52 +5,41 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError, ModelWarning, within
 from anisocontact.base.fenicsx import MPI
 from anisocontact.base.limits import Limits
-from anisocontact.bulk import materials
+from anisocontact.bulk import Material, materials
 from anisocontact.case import objects
-from anisocontact.case.amplitudes import times
 from anisocontact.case.contacts import contact
 from anisocontact.case.courses import CaseCourses
 from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
-from anisocontact.case.model import MORTAR, Case, StepSection
+from anisocontact.case.mesh import arrays_of, name_nodes
+from anisocontact.case.model import MORTAR, Case
 from anisocontact.case.petsc_options import check_options
 from anisocontact.case.quantity import AUTO
-from anisocontact.case.read import CaseFile, load
+from anisocontact.case.read import CaseFile
+from anisocontact.case.steps import steps_of
 from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
-from anisocontact.mesh import GmshFile, Model
-from anisocontact.mesh.arrays import MeshArrays
-from anisocontact.mesh.joined import with_joined
-from anisocontact.mesh.merge import merge
-from anisocontact.mesh.node_groups import node_near, nodes_along
-from anisocontact.mesh.readers import file_arrays, is_mesh
-from anisocontact.mesh.selectors import with_groups
+from anisocontact.contact import Contact
+from anisocontact.interface import TangentialLaw
+from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import (
     CoupledFace,
     CyclicSymmetry,
-    Cylindrical,
     ElasticSupport,
     Problem,
     Solver,
     Spring,
     Step,
     Tie,
-    Turn,
-    Until,
 )
-
-#: Supports and loads that points and edges have as well as facet groups.
-ON_NODES = ("displacement", "cylindrical", "rotation", "force")
 
 
 def _at_points(case: Case, problem: Problem) -> Iterator[str]:
@@ -143,28 +132,21 @@ def build(file: CaseFile, python: bool = True) -> Built:
         for i, section in enumerate(case.contact)
     ]
     model = Model.from_arrays(
-        _arrays(file, MPI.COMM_WORLD),
+        arrays_of(file, MPI.COMM_WORLD),
         idealisation=objects.idealisation(case),
         touching=[section.slave for section in case.contact],
     )
-    _check_bodies(case, model)
+    for name in case.material:
+        model.cells(name, f"material.{name}")
     adjusted = close_gaps_of(case.tie, model)
-    _name_nodes(case, model)
+    name_nodes(case, model)
     materials = {
         name: material_of(section, file.resolve, f"material.{name}", python)
         for name, section in case.material.items()
     }
     bodies = _rigid_bodies(case)
-    carriers = {
-        surface: body
-        for body in bodies.values()
-        for surface in case.rigid[body.name].carries(body.name)
-    }
-    contacts = [
-        contact(case, section, model, materials, carriers, f"contact[{i}]", law)
-        for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
-    ]
-    steps = _steps(case, model, CaseCourses(case, file.resolve, python))
+    contacts = _contacts(case, model, materials, bodies, own)
+    steps = steps_of(case, model, CaseCourses(case, file.resolve, python))
     check_options(case.solver.options, case.solver.strategy)
     problem = Problem(
         model,
@@ -177,11 +159,35 @@ def build(file: CaseFile, python: bool = True) -> Built:
         ties=[Tie(**section.given()) for section in case.tie],
         cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
     )
+    _check_output(case, problem)
+    return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
+
+
+def _contacts(
+    case: Case,
+    model: Model,
+    materials: Mapping[str, Material],
+    bodies: Mapping[str, RigidBody],
+    laws: Sequence[TangentialLaw | None],
+) -> list[Contact]:
+    """The contacts, with the rigid bodies that carry their surfaces and the laws of files."""
+    carriers = {
+        surface: body
+        for body in bodies.values()
+        for surface in case.rigid[body.name].carries(body.name)
+    }
+    return [
+        contact(case, section, model, materials, carriers, f"contact[{i}]", law)
+        for i, (section, law) in enumerate(zip(case.contact, laws, strict=True))
+    ]
+
+
+def _check_output(case: Case, problem: Problem) -> None:
+    """Refuse probes beside the mesh and resultants of groups that are not there."""
     for name, section in case.output.probe.items():
-        section.probe().places(model, f"output.probe.{name}")
+        section.probe().places(problem.model, f"output.probe.{name}")
     for name, wanted in case.output.resultant.items():
         wanted.resultant().nodes(problem, f"output.resultant.{name}")
-    return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
 
 
 def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
@@ -201,58 +207,6 @@ def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
             raise
 
 
-def mesh_of(path: Path) -> MeshArrays:
-    """The mesh of a case file or of a mesh file, in one process.
-
-    Args:
-        path: A mesh file by the ending of its name, else a case file.
-
-    Raises:
-        InputError: It is missing or damaged.
-    """
-    if is_mesh(path):
-        return file_arrays(path, field="")
-    return _arrays(load(path), MPI.COMM_SELF)
-
-
-def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:
-    """The mesh of a case, with the groups that it names."""
-    mesh = file.case.mesh
-    parts: list[MeshArrays] = []
-    if mesh.file is not None:
-        shaped = {name for bodies in mesh.shaped().values() for name in bodies}
-        wanted = [name for name in file.case.material if name not in shaped]
-        source = GmshFile(file.resolve(mesh.file), None if mesh.files else wanted)
-        parts.append(source.arrays(comm))
-    for name, section in mesh.files.items():
-        place = f"mesh.files.{name}"
-        path, there = file.resolve(section.path), objects.placement(section)
-        with within(place):
-            source = GmshFile(
-                path, section.bodies, section.rename, there, "path", section.cell_size
-            )
-            parts.append(source.arrays(comm))
-    for shape, bodies in mesh.shaped().items():
-        for name, table in bodies.items():
-            place = f"mesh.{shape}.{name}"
-            body = objects.body(table, name, place)
-            with within(place):
-                parts.append(body.arrays(comm))
-    return _grouped(file.case, merge(parts))
-
-
-def _grouped(case: Case, mesh: MeshArrays) -> MeshArrays:
-    """The mesh with the facet groups that the case names."""
-    chosen = {
-        name: [objects.selector(table, f'group."{name}"') for table in tables]
-        for name, tables in case.group.items()
-    }
-    with within("group"):
-        mesh = with_groups(mesh, chosen)
-    with within("join"):
-        return with_joined(mesh, case.join)
-
-
 def _attached(case: Case) -> list[ElasticSupport | Spring]:
     beds = [
         ElasticSupport(group, bed.normal, bed.tangential)
@@ -260,25 +214,6 @@ def _attached(case: Case) -> list[ElasticSupport | Spring]:
     ]
     springs = [Spring(name, s.group, s.stiffness, s.to) for name, s in case.spring.items()]
     return [*beds, *springs]
-
-
-def _check_bodies(case: Case, model: Model) -> None:
-    for name in case.material:
-        model.cells(name, f"material.{name}")
-
-
-def _name_nodes(case: Case, model: Model) -> None:
-    """Points and edges by their names."""
-    for name, table in case.nodes.items():
-        body, place = name.partition(".")[0], f'nodes."{name}"'
-        if table.near is not None:
-            found = node_near(model, body, table.near, place)
-        else:
-            start: Any = table.start
-            end: Any = table.end
-            found = nodes_along(model, body, start, end, place)
-        with within(place):
-            model.name_nodes(name, found)
 
 
 def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
@@ -312,75 +247,3 @@ def _faces(case: Case, model: Model, bodies: Mapping[str, RigidBody]) -> list[Co
             model.boundary(group, f"rigid.{name}.faces[{i}]")
             found.append(CoupledFace(group, bodies[name]))
     return found
-
-
-def _steps(case: Case, model: Model, schedule: CaseCourses) -> list[Step]:
-    steps, begun = [], 0.0
-    for i, section in enumerate(case.step):
-        place = f"step[{i}]"
-        for what, group in section.groups():
-            known = model.nodes if what in ON_NODES else model.facets
-            known(group, f"{place}.{what}")
-        with within(place):
-            event, probes = section.until, case.output.probe
-            until = None if event is None else event.made(section.name, probes)
-            steps.append(_step(section, schedule, begun, _weights(case, section), until))
-        begun += section.duration
-    return steps
-
-
-def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
-    """Forces per volume of gravity, by body; bodies without weight have none."""
-    given = {} if section.gravity is None else section.gravity.given()
-    heavy = {name: table.density for name, table in case.material.items() if table.density}
-    return {
-        name: {axis: times(value, density) for axis, value in given.items()}
-        for name, density in heavy.items()
-        if given
-    }
-
-
-def _cylinders(section: StepSection, schedule: CaseCourses, begun: float) -> dict[str, Cylindrical]:
-    """Displacements prescribed along cylindrical directions."""
-    found = {}
-    for name, given in section.cylindrical.items():
-        with within(f"cylindrical.{name}"):
-            values = schedule.values(given.given(), None, begun)
-            found[name] = Cylindrical(values, given.axis, given.point)
-    return found
-
-
-def _step(
-    section: StepSection,
-    schedule: CaseCourses,
-    begun: float,
-    weights: Mapping[str, Any],
-    until: Until | None,
-) -> Step:
-    def prescribed(kind: str) -> dict[str, dict[str, Any]]:
-        return {
-            name: schedule.values(given.given(), getattr(given, "path", None), begun)
-            for name, given in getattr(section, kind).items()
-        }
-
-    turns = {}
-    for name, table in section.rotation.items():
-        given = dict(table)
-        if table.amplitude is not None:
-            given["amplitude"] = schedule.amplitude(table.amplitude, begun)
-        with within(f"rotation.{name}"):
-            turns[name] = Turn(**given)
-    kinds = ("displacement", "motion", "load", "traction", "force", "anchor")
-    weights = {name: schedule.values(given, None, begun) for name, given in weights.items()}
-    return Step(
-        section.name,
-        section.increments,
-        duration=section.duration,
-        pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
-        temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
-        rotation=turns,
-        cylindrical=_cylinders(section, schedule, begun),
-        body_force=prescribed("body_force") | weights,
-        until=until,
-        **{kind: prescribed(kind) for kind in kinds},
-    )

@@ -25,7 +25,8 @@ def command(arguments: argparse.Namespace) -> int:
         return 0
     file = load(path)
 
-    from anisocontact.case.build import build, mesh_of
+    from anisocontact.case.build import build
+    from anisocontact.case.mesh import mesh_of
     from anisocontact.mesh.described import described
 
     built = build(file, python=not arguments.no_python)
@@ -63,49 +64,83 @@ def _is_mesh(path: Path) -> bool:
 
 def contents(built: Built) -> list[str]:
     """What a case contains, in a few lines."""
-    from anisocontact.contact import doubtful_sides
-    from anisocontact.contact.hints import jumping_rules, on_field_axes, uneven
+    title = built.file.case.title or built.file.name
+    steps = (
+        f"step      {step.name}: {step.increments} increments, "
+        f"{', '.join(step.driven()) or 'nothing new'}"
+        for step in built.steps
+    )
+    return [
+        f"case      {title}",
+        *_mesh(built),
+        *_contacts(built),
+        *_ties(built),
+        *_points(built),
+        *_rigid_bodies(built),
+        *steps,
+        *_hints(built),
+    ]
 
-    case, problem = built.file.case, built.problem
-    model = problem.model
+
+def _mesh(built: Built) -> Iterator[str]:
+    """Bodies with their materials, and the mesh of all."""
+    model, problem = built.problem.model, built.problem
+    for body in model.body_names():
+        yield f"body      {body}: {built.file.case.material[body].chosen['model']}"
     topology = model.mesh.topology
     cells = topology.index_map(topology.dim).size_global
     nodes = model.space.dofmap.index_map.size_global
-    lines = [f"case      {case.title or built.file.name}"]
-    for body in model.body_names():
-        lines.append(f"body      {body}: {case.material[body].chosen['model']}")
-    lines.append(
+    yield (
         f"mesh      {nodes} nodes, {cells} cells of order {model.order}, "
         f"{problem.unknowns} unknowns"
     )
-    for section, contact in zip(case.contact, problem.contacts, strict=True):
+
+
+def _contacts(built: Built) -> Iterator[str]:
+    """Slave, master, and by which laws and where they meet."""
+    problem = built.problem
+    for section, contact in zip(built.file.case.contact, problem.contacts, strict=True):
         _, values = contact.interface.normal.named
         penalty = f", penalty {values['penalty'][0]:.4g}" if "penalty" in values else ""
         own = section.python
         rule = section.friction.sliding_rule if own is None else f"{own.law} of {own.file}"
-        lines.append(
-            f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
-            f"slave facets{penalty}, {rule}, {_pass(contact)}"
+        facets = problem.model.count_facets(section.slave)
+        yield (
+            f"contact   {section.slave} on {section.master}: {facets} slave facets{penalty}, "
+            f"{rule}, {_pass(contact)}"
         )
-    for tie in case.tie:
-        facets = model.count_facets(tie.slave)
-        lines.append(f"tie       {tie.slave} to {tie.master}: {facets} slave facets")
-    lines += [f"tie       {line}" for line in built.adjusted]
-    lines += _points(built)
-    for rigid in problem.rigid.bodies:
+
+
+def _ties(built: Built) -> Iterator[str]:
+    """Ties, and what they have moved in the mesh."""
+    for tie in built.file.case.tie:
+        facets = built.problem.model.count_facets(tie.slave)
+        yield f"tie       {tie.slave} to {tie.master}: {facets} slave facets"
+    for line in built.adjusted:
+        yield f"tie       {line}"
+
+
+def _rigid_bodies(built: Built) -> Iterator[str]:
+    """Rigid bodies and the facet groups that follow them."""
+    for rigid in built.problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"
         at = ", ".join(f"{v:g}" for v in rigid.reference)
-        led = [face.group for face in problem.rigid.coupled[rigid]]
+        led = [face.group for face in built.problem.rigid.coupled[rigid]]
         with_ = f", with {', '.join(led)}" if led else ""
-        lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}{with_}")
-    for step in built.steps:
-        driven = ", ".join(step.driven()) or "nothing new"
-        lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
-    lines += [f"note      {text}" for text in uneven(problem.contacts)]
-    lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
-    contacts = problem.contacts
+        yield f"rigid     {rigid.name}: reference point ({at}), {how}{with_}"
+
+
+def _hints(built: Built) -> Iterator[str]:
+    """What is worth a note, and what is hardly meant; collective."""
+    from anisocontact.contact import doubtful_sides
+    from anisocontact.contact.hints import jumping_rules, on_field_axes, uneven
+
+    contacts = built.problem.contacts
+    for text in uneven(contacts):
+        yield f"note      {text}"
     doubts = (*doubtful_sides(contacts), *jumping_rules(contacts), *on_field_axes(contacts))
-    return [*lines, *(f"warning   {line}" for line in doubts)]
+    for text in (*built.doubts(), *built.solver.cautions, *doubts):
+        yield f"warning   {text}"
 
 
 def _overlaps(built: Built) -> list[str]:

@@ -29,7 +29,7 @@ def command(arguments: argparse.Namespace) -> int:
             write_vtkhdf(results, path, kind)
             say(f"written   {path}")
         return 0
-    from anisocontact.case.build import mesh_of
+    from anisocontact.case.mesh import mesh_of
     from anisocontact.mesh.described import described
     from anisocontact.mesh.write import write_mesh
 
