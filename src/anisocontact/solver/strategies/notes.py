@@ -1,11 +1,11 @@
-"""Lines of a log that are worth being said once."""
+"""Notes of a strategy for the log."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 
-def once(note: Callable[[str], None]) -> Callable[[str], None]:
+def without_repeats(note: Callable[[str], None]) -> Callable[[str], None]:
     """A log that does not repeat a line, as attempts that condense the same bodies again would.
 
     Args:
@@ -13,7 +13,7 @@ def once(note: Callable[[str], None]) -> Callable[[str], None]:
 
     Example:
         >>> said = []
-        >>> log = once(said.append)
+        >>> log = without_repeats(said.append)
         >>> for line in ("condensing", "condensing", "widened"):
         ...     log(line)
         >>> said

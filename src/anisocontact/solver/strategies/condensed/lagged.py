@@ -19,7 +19,7 @@ from anisocontact.solver.strategies.condensed.lagged_preconditioner import (
 from anisocontact.solver.strategies.condensed.mixed import MixedForm
 from anisocontact.solver.strategies.condensed.substructures import Substructures
 from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
-from anisocontact.solver.strategies.once import once
+from anisocontact.solver.strategies.notes import without_repeats
 from anisocontact.solver.strategies.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -59,7 +59,7 @@ class LaggedFactor:
     def __init__(
         self, problem: Problem, note: Callable[[str], None], kept: Arrays | None = None
     ) -> None:
-        self._problem, self._note = problem, once(note)
+        self._problem, self._note = problem, without_repeats(note)
         self._several = problem.comm.size > 1
         self._factor: LaggedPreconditioner = (
             Substructures(problem) if self._several else BorderedPreconditioner(problem)

@@ -20,7 +20,7 @@ from anisocontact.bulk.pressures import OF_BOTH, CellPressures
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.krylov_backoff import KrylovBackoff
-from anisocontact.solver.strategies.once import once
+from anisocontact.solver.strategies.notes import without_repeats
 from anisocontact.solver.strategies.whole import WholeLU
 from anisocontact.solver.system.problem import Problem
 
@@ -175,7 +175,8 @@ class MixedKrylov:
         prefix: str,
         note: Callable[[str], None],
     ) -> None:
-        self._count, self._comm, self._note = problem.solved_for, problem.comm, once(note)
+        self._count, self._comm = problem.solved_for, problem.comm
+        self._note = without_repeats(note)
         self._form = DisplacementPressureForm(problem, volume)
         self._levels, self._backoff = levels, KrylovBackoff()
         self._right, self._found = self._form.new_vector(), self._form.new_vector()
