@@ -9,7 +9,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.contact.multiplier_schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.solver.stepping.acceptance import INVERTED, refused
+from anisocontact.solver.stepping.acceptance import INVERTED, Refusal, refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.convergence_diagnostics import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
@@ -227,23 +227,8 @@ class Attempts:
         self._share, self._final, self._turns.objects = 1.0, False, False
         x = way.start.copy()
         try:
-            if way.flowing:
-                problem.stabilisation.flow.start(problem.nodal)
-            problem.contact_term.take_way(way.multipliers)
-            problem.contact_term.predict(way.ratio)
-            if way.layered:
-                result = self._continuation.solve(x)
-            else:
-                damping = self._damping if way.damped else None
-                result = self._newton.solve(x, way.full_steps, damping)
-            refusal = None if result.reason else refused(problem, x)
-            if not (result.reason or refusal or way.flowing):
-                # a jump turns points by as much in the smallest part
-                refusal = self._turns.objection(problem)
-                self._ahead = x if self._turns.objects else None
-            if not result.reason and refusal is None and self.events is not None:
-                refusal = self.events.objection(x)
-                self._ahead = x if refusal is not None and not way.flowing else None
+            result = self._correct(way, x)
+            refusal = None if result.reason else self._objection(way, x)
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []
@@ -251,11 +236,7 @@ class Attempts:
             if refusal is not None:
                 self._final = refusal.final
                 return replace(result, reason=refusal.reason), list(refusal.culprits)
-            known = list(result.culprits)
-            known = known or find_culprits(problem, self._watch, self._newton.residual)
-            if known and known[0].kind == "law":
-                self._failed = failed_point(problem)
-            return result, known
+            return result, self._culprits(result)
         except (Exception, KeyboardInterrupt):
             problem.together.met()
             raise
@@ -264,6 +245,38 @@ class Attempts:
             if not problem.together.apart:
                 self._continuation.end()
                 problem.roll_back()
+
+    def _correct(self, way: _Way, x: Vec) -> NewtonResult:
+        """Newton's method on one of the ways; `x` is its start, and its last iterate."""
+        problem = self._problem
+        if way.flowing:
+            problem.stabilisation.flow.start(problem.nodal)
+        problem.contact_term.take_way(way.multipliers)
+        problem.contact_term.predict(way.ratio)
+        if way.layered:
+            return self._continuation.solve(x)
+        damping = self._damping if way.damped else None
+        return self._newton.solve(x, way.full_steps, damping)
+
+    def _objection(self, way: _Way, x: Vec) -> Refusal | None:
+        """Why a state in equilibrium is not accepted, if it is not."""
+        refusal = refused(self._problem, x)
+        if refusal is None and not way.flowing:
+            # a jump turns points by as much in the smallest part
+            refusal = self._turns.objection(self._problem)
+            self._ahead = x if self._turns.objects else None
+        if refusal is None and self.events is not None:
+            refusal = self.events.objection(x)
+            self._ahead = x if refusal is not None and not way.flowing else None
+        return refusal
+
+    def _culprits(self, result: NewtonResult) -> list[Culprit]:
+        """Where an attempt failed that found no equilibrium."""
+        known = list(result.culprits)
+        known = known or find_culprits(self._problem, self._watch, self._newton.residual)
+        if known and known[0].kind == "law":
+            self._failed = failed_point(self._problem)
+        return known
 
     def _damping(self) -> float:
         unsettled = self._problem.comm.allreduce(self._watch.unsettled())

@@ -225,29 +225,13 @@ class Solver:
         self.place.stopped = stopped
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
+        """Part by part to the end of the step, or to its event."""
         place, control = self.place, self.place.control
-        if not place.begun:
-            self.problem.begin(step)
-            self._turns.begin()
-            self._predictor.forget()
-            place.begun = True
-        prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
-        largest = PRESCRIBED / max(prescribed, PRESCRIBED)
-        if ambiguous := half_turns(prescribed, self.limits.smallest):
-            raise StoppedError(step.name, control.increment, ambiguous)
-        control.bound(largest)
-        place.events = events = EventWatch(self.problem, step, self.limits.smallest)
+        largest, events = self._begin(step)
         attempts.events = events
-        events.restore(self._waiting)
-        self._waiting = {}
         while control.increment <= step.increments:
             last = self.problem.accepted()
-            control.goal = events.goal(control.done)
-            events.begin(control.part, control.end)
-            slides, end = events.slides(), fraction(step, control.increment, control.end)
-            now = place.reached(step)
-            overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
-            if overloaded and events.overload():
+            if self._slides_before_end(step, events):
                 continue
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
@@ -270,6 +254,39 @@ class Solver:
             place.spent = 0
             place.lost = None if done == 1.0 else place.lost
             yield accepted
+
+    def _begin(self, step: Step) -> tuple[float, EventWatch]:
+        """Take over the loads of a step, unless they are in a run that goes on.
+
+        Returns:
+            Largest part by how far the step turns rigid bodies, share of an increment; and what
+            looks for its event.
+        """
+        place, control = self.place, self.place.control
+        if not place.begun:
+            self.problem.begin(step)
+            self._turns.begin()
+            self._predictor.forget()
+            place.begun = True
+        prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
+        largest = PRESCRIBED / max(prescribed, PRESCRIBED)
+        if ambiguous := half_turns(prescribed, self.limits.smallest):
+            raise StoppedError(step.name, control.increment, ambiguous)
+        control.bound(largest)
+        place.events = events = EventWatch(self.problem, step, self.limits.smallest)
+        events.restore(self._waiting)
+        self._waiting = {}
+        return largest, events
+
+    def _slides_before_end(self, step: Step, events: EventWatch) -> bool:
+        """Whether friction cannot hold the loads at the end of a part that ends with sliding."""
+        control = self.place.control
+        control.goal = events.goal(control.done)
+        events.begin(control.part, control.end)
+        slides, end = events.slides(), fraction(step, control.increment, control.end)
+        now = self.place.reached(step)
+        overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
+        return bool(overloaded) and events.overload()
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
         """Solve the next part from the state that is predicted for its end."""
