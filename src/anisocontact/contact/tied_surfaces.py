@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.errors import InputError
@@ -81,6 +82,28 @@ class WholeGroups:
         """Places among `nodes` of numbers in the whole mesh; -1 of others."""
         at = np.minimum(np.searchsorted(self.nodes, nodes), max(len(self.nodes) - 1, 0))
         return np.where(self.nodes[at] == nodes, at, -1)
+
+    def own_nodes(self, members: Ints) -> Ints:
+        """Local numbers of those nodes this rank owns, of places among `nodes`."""
+        own = members[self.owned()[members]]
+        return np.asarray(self.nodes[own] - self._map.local_range[0])
+
+    def everywhere[T: np.generic](self, own: npt.NDArray[T], nothing: float) -> npt.NDArray[T]:
+        """Values of all nodes of the groups from those of the nodes of each rank; collective.
+
+        Args:
+            own: Values of the nodes this rank owns, (m, ...).
+            nothing: Value of nodes that no rank owns.
+
+        Returns:
+            Values, (n, ...).
+        """
+        here, comm = self.owned(), self.model.mesh.comm
+        values = np.full((len(self.nodes), *own.shape[1:]), nothing, dtype=own.dtype)
+        values[here] = own[self.nodes[here] - self._map.local_range[0]]
+        owner = np.asarray(comm.allgather(here)).argmax(axis=0)
+        every = np.asarray(comm.allgather(values))
+        return np.asarray(every[owner, np.arange(len(owner))])
 
     def _own(self, name: str) -> WholeGroup:
         space = self.model.space

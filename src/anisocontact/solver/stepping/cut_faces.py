@@ -33,7 +33,7 @@ class CutFaceWatch:
 
     def __init__(self, problem: Problem) -> None:
         ties, nodes = problem.constraints.ties, problem.model.space.dofmap.index_map
-        on_cuts = np.zeros(0, dtype=np.int64) if ties is None else ties.on_cuts()
+        on_cuts = np.zeros(0, dtype=np.int64) if ties is None else ties.sectors.on_cuts()
         self._watched: list[tuple[Contact, Flags]] = []
         for one in problem.contacts if problem.comm.allreduce(len(on_cuts)) else ():
             if one.meshed and one.slave_points.at_nodes and not one.goes_on:

@@ -100,7 +100,7 @@ def make_parts(
     like = layout.new_vector()
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
     if tied is not None:
-        go_on_beyond_cuts(contacts, tied)
+        go_on_beyond_cuts(contacts, tied.sectors)
     guides = _guides(model, symmetry, like, tied, faces)
     constraints = Constraints(like, constrain_middles(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
@@ -146,7 +146,8 @@ def _guides(
 ) -> Guides:
     """What holds nodes along directions of their own, which coupled faces have none of."""
     planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
-    guides = Guides(model, planes, like, middle_nodes(model), tied)
+    sectors = None if tied is None else tied.sectors
+    guides = Guides(model, planes, like, middle_nodes(model), sectors)
     on = [np.zeros(0, int), *(nodes for nodes, _ in guides.of_planes())]
     faces.check_planes(np.unique(np.concatenate(on)))
     return guides

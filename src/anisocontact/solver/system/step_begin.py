@@ -58,7 +58,7 @@ def _begin_contacts(parts: Parts, held: Sequence[Supported], count: int) -> None
     of_faces = along_axes(parts.rigid.prescribed_of_faces())
     fixed = supported_space(count, [*held, *of_faces])
     if parts.assembly.constraints.ties is not None:
-        parts.assembly.constraints.ties.hold_cuts(fixed)
+        parts.assembly.constraints.ties.sectors.hold_cuts(fixed)
     fixed = with_ghosts(parts.model.space, fixed)
     still = [*parts.supports.resting(), *parts.guides.resting()]
     there = np.zeros((count, len(still)), dtype=bool)
@@ -111,7 +111,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
         if (ties := parts.assembly.constraints.ties) is not None:
             ties.check(held, _on_bodies(parts))
             ends = supports.unknowns, supports.end
-            ties.check_prescribed(*ends, guides.of_planes(), step.name)
+            ties.sectors.check_prescribed(*ends, guides.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
     return doubtful + _doubtful(parts)
 
@@ -119,7 +119,9 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
 def _doubtful(parts: Parts) -> list[str]:
     """What is doubtful whatever the steps ask for, a line each; collective."""
     ties, materials = parts.assembly.constraints.ties, parts.materials
-    of_ties = [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties)]
+    of_ties = (
+        [] if ties is None else [*ties.left_out(), *halved_nodes(parts.contacts, ties.sectors)]
+    )
     bodies = doubtful_materials(parts.model, materials, parts.bulk)
     of_contacts = [nodes for contact in parts.contacts for nodes in contact.nodes_of_groups]
     links = [] if ties is None else ties.links
@@ -130,7 +132,7 @@ def _doubtful(parts: Parts) -> list[str]:
 def _cut_faces(parts: Parts) -> list[SupportedFrame]:
     """Cut faces of sectors."""
     ties = parts.assembly.constraints.ties
-    return [] if ties is None else ties.frames()
+    return [] if ties is None else ties.sectors.frames()
 
 
 def _on_bodies(parts: Parts) -> Ints:

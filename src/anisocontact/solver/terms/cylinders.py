@@ -12,8 +12,8 @@ from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError, within
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
+from anisocontact.solver.terms.sectors import Sectors
 from anisocontact.solver.terms.step import Goal, Step
-from anisocontact.solver.terms.tied_faces import TiedFaces
 
 #: Component of nodes that stay on the axis of a sector.
 ACROSS = "across"
@@ -65,11 +65,11 @@ class Cylinders:
     Args:
         model: Mesh with named facets and nodes.
         tied: Nodes that follow from others, which keep them where they have to be.
-        ties: Faces that are tied to others, cut faces of sectors too, if there are any.
+        sectors: Cut faces of sectors, if there are any.
     """
 
-    def __init__(self, model: Model, tied: Ints, ties: TiedFaces | None = None) -> None:
-        self._model, self._tied, self._ties = model, tied, ties
+    def __init__(self, model: Model, tied: Ints, sectors: Sectors | None = None) -> None:
+        self._model, self._tied, self._sectors = model, tied, sectors
         self._systems: dict[str, Cylindrical] = {}
         self._goals: dict[_Key, Goal | None] = {}
         self._guides: list[Guide] = []
@@ -145,12 +145,12 @@ class Cylinders:
     def _guide(self, step: Step, group: str, name: str, goal: Goal | None, u: Floats) -> Guide:
         field = f"step {step.name!r}.cylindrical"
         nodes = np.setdiff1d(self._model.nodes(group, field).astype(np.int64), self._tied)
-        if self._ties is not None:
+        if self._sectors is not None:
             system = self._systems[group]
             with within(field):
-                repeated = self._ties.repeated(nodes, system.axis, system.point)
+                repeated = self._sectors.repeated(nodes, system.axis, system.point)
             if name == "axial":  # what is on the axis follows nothing along it
-                repeated = np.setdiff1d(repeated, self._ties.axial)
+                repeated = np.setdiff1d(repeated, self._sectors.axial)
             nodes = np.setdiff1d(nodes, repeated)
         x = np.asarray(self._model.space.tabulate_dof_coordinates())[nodes]
         directions = self._systems[group].directions(x)[name]

@@ -14,9 +14,9 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cylinders import ACROSS, Cylinders, Guide
 from anisocontact.solver.terms.elimination import Elimination, eliminated
+from anisocontact.solver.terms.sectors import Sectors
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
-from anisocontact.solver.terms.tied_faces import TiedFaces
 
 #: What cannot be met of the displacements over the largest one that counts as nothing.
 OUT = 1e-6
@@ -78,7 +78,7 @@ class Guides:
         planes: Symmetry planes.
         like: A vector of the unknowns.
         tied: Nodes that follow from others, which keep them where they have to be.
-        ties: Faces that are tied to others, cut faces of sectors too, if there are any.
+        sectors: Cut faces of sectors, if there are any.
 
     Attributes:
         constraint: The constraints of the step that has begun.
@@ -91,12 +91,12 @@ class Guides:
         planes: SymmetryPlanes,
         like: Vec,
         tied: Ints,
-        ties: TiedFaces | None = None,
+        sectors: Sectors | None = None,
     ) -> None:
-        self._model, self._like, self._tied, self._ties = model, like, tied, ties
+        self._model, self._like, self._tied, self._sectors = model, like, tied, sectors
         self._planes = planes
         self._still = self._of_run()
-        self._cylinders = Cylinders(model, tied, ties)
+        self._cylinders = Cylinders(model, tied, sectors)
         self.constraint: Constraint | None = None
         self.slaves: Ints = np.zeros(0, dtype=np.int64)
         self._take(self._still)
@@ -116,7 +116,7 @@ class Guides:
 
     def fresh(self) -> Guides:
         """The same before the first step, to go through the steps without solving."""
-        return Guides(self._model, self._planes, self._like, self._tied, self._ties)
+        return Guides(self._model, self._planes, self._like, self._tied, self._sectors)
 
     def supported(self) -> list[tuple[Ints, Floats]]:
         """Nodes this rank owns that have a support, and the directions, (3,) or (nodes, 3)."""
@@ -242,14 +242,14 @@ class Guides:
 
     def _of_run(self) -> list[Guide]:
         """Symmetry planes, and what keeps nodes on the axes of sectors."""
-        if self._ties is None:
+        if self._sectors is None:
             return self._planes.guides()
         found = []
         for plane in self._planes.guides():
-            off = self._ties.off_planes(plane.group, plane.nodes, plane.direction)
+            off = self._sectors.off_planes(plane.group, plane.nodes, plane.direction)
             nodes = np.setdiff1d(plane.nodes, off)
             found.append(_still(plane.group, plane.component, nodes, plane.direction))
-        for name, on_axis, across in self._ties.on_axes():
+        for name, on_axis, across in self._sectors.on_axes():
             nodes = np.setdiff1d(on_axis, self._tied)
             found += [_still(f"the axis of {name}", ACROSS, nodes, one) for one in across]
         return found

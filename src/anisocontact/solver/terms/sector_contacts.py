@@ -10,7 +10,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import Contact
 from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.solver.terms.cyclic import CutFaces
-from anisocontact.solver.terms.tied_faces import TiedFaces
+from anisocontact.solver.terms.sectors import Sectors
 
 #: Angle between the normals of two sides of a cut, radian, from which on pressures there are wrong
 #: as soon as points slip.
@@ -25,21 +25,21 @@ HALVED = (
 )
 
 
-def go_on_beyond_cuts(contacts: Sequence[Contact], tied: TiedFaces) -> None:
+def go_on_beyond_cuts(contacts: Sequence[Contact], sectors: Sectors) -> None:
     """Let contacts meet what goes on beyond the cut faces of sectors, before the first step.
 
     On several processes, and where a surface meets itself, they end at the cut faces.
     """
     for contact in contacts:
         if contact.of_two_groups and contact.unknowns.comm.size == 1:
-            seams = _seams(contact, tied)
+            seams = _seams(contact, sectors)
             if seams:
                 contact.go_on_beyond(seams)
 
 
-def _seams(contact: Contact, tied: TiedFaces) -> list[Seam]:
+def _seams(contact: Contact, sectors: Sectors) -> list[Seam]:
     """Cut faces of both bodies of a contact, cut by one turn, if it has nodes there."""
-    of_bodies = [tied.cuts_of(group.partition(".")[0]) for group in contact.groups]
+    of_bodies = [sectors.cuts_of(group.partition(".")[0]) for group in contact.groups]
     if not all(of_bodies):
         return []
     found = [cut.seam for cuts in of_bodies for cut in cuts]
@@ -50,15 +50,15 @@ def _seams(contact: Contact, tied: TiedFaces) -> list[Seam]:
     return found if alike and reached else []
 
 
-def halved_nodes(contacts: Sequence[Contact], tied: TiedFaces) -> Iterator[str]:
+def halved_nodes(contacts: Sequence[Contact], sectors: Sectors) -> Iterator[str]:
     """A line for each contact with slave nodes that are not those of the whole; collective.
 
     Those that follow others are no slave points of a contact that goes on beyond the cuts.
     """
     for contact in contacts:
         if contact.meshed and contact.slave_points.at_nodes:
-            for cut in tied.cuts_of(contact.slave.partition(".")[0]):
-                tilt = _tilt(contact, cut, tied.sides_of(cut))
+            for cut in sectors.cuts_of(contact.slave.partition(".")[0]):
+                tilt = _tilt(contact, cut, sectors.sides_of(cut))
                 if tilt > TILTED:
                     said = HALVED.format(cut.name, np.degrees(tilt))
                     yield f"contact {contact.name!r}: {said}"

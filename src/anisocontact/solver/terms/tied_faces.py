@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
@@ -21,9 +20,9 @@ from anisocontact.contact.tie_elimination import eliminated
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
-from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
-from anisocontact.solver.terms.free_modes import SupportedFrame
+from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.midside_nodes import shares_of_corners
+from anisocontact.solver.terms.sectors import ALONG, Sectors
 
 if TYPE_CHECKING:
     from anisocontact.contact.tie_weights import TieConditions
@@ -32,8 +31,6 @@ type Sparse = scipy.sparse.csr_array
 
 #: Gap up to which nodes are tied, over the size of the facets of the master, if none is given.
 TOLERANCE = 0.1
-#: Share of a direction along an axis that is all of it.
-ALONG = 1.0 - 1e-9
 
 
 @typed
@@ -74,6 +71,7 @@ class TiedFaces:
         sectors: Cut faces of sectors; ties and these are one at least.
 
     Attributes:
+        sectors: Their cut faces.
         constraint: The constraint of the step that has begun; None before the first.
 
     Raises:
@@ -97,7 +95,7 @@ class TiedFaces:
                 check_sides(model, pair.slave, pair.master, None)
         both = {group for pair in pairs.values() for group in (pair.slave, pair.master)}
         self._groups = groups = WholeGroups(model, both)
-        self._cuts = {name: CutFaces.of(name, groups, one) for name, one in cyclic.items()}
+        self.sectors = Sectors(cyclic, groups)
         self._conditions = {name: self._found(name, pair) for name, pair in pairs.items()}
         self._middle, self._of_corners = self._corners()
         self._held: Flags | None = None
@@ -108,139 +106,6 @@ class TiedFaces:
     def links(self) -> list[tuple[str, str]]:
         """Facet groups that are tied, of a sector its cut faces."""
         return [(pair.slave, pair.master) for pair in self._pairs.values()]
-
-    def frames(self) -> list[SupportedFrame]:
-        """Cut faces as nodes that move along and about the axis alone where nothing is strained."""
-        found = []
-        for cut in self._cuts.values():
-            held = np.array([True, True, False] * 2)
-            nodes = self._own(np.union1d(*cut.sides))
-            found.append(
-                SupportedFrame(nodes, np.array(cut.turning.point), held, cut.turning.frame)
-            )
-        return found
-
-    def on_axes(self) -> list[tuple[str, Ints, Floats]]:
-        """Name of each sector, nodes this rank owns on its axis, two directions across it."""
-        cuts = self._cuts.items()
-        return [(name, self._own(cut.on_axis), cut.turning.frame[:2]) for name, cut in cuts]
-
-    def off_planes(self, group: str, nodes: Ints, normal: Floats) -> Ints:
-        """Those of nodes on a symmetry plane that are not held there by themselves; collective.
-
-        Slave nodes of a sector whose axis is normal to the plane are held as the master is.
-
-        Args:
-            group: Name of the plane.
-            nodes: Nodes this rank owns.
-            normal: Normal of the plane, (3,).
-
-        Raises:
-            InputError: The plane meets a slave at an angle, so that it would be another one there.
-        """
-        found = [np.zeros(0, dtype=np.int64)]
-        for name, cut in self._cuts.items():
-            slave = np.setdiff1d(np.intersect1d(self._own(cut.sides[0]), nodes), self.axial)
-            if cut.turning.along(normal):
-                found.append(slave)
-            elif np.abs(normal).max() < ALONG and self._model.mesh.comm.allreduce(len(slave)):
-                text = f"{group!r} has nodes on the slave of {name}, whose axis is not its normal"
-                raise InputError(text, "symmetry")
-        return np.unique(np.concatenate(found))
-
-    def on_cuts(self) -> Ints:
-        """Nodes this rank owns on the cut faces of sectors."""
-        none = np.zeros(0, dtype=np.int64)
-        sides = (side for cut in self._cuts.values() for side in cut.sides)
-        return np.unique(np.concatenate([none, *(self._own(side) for side in sides)]))
-
-    @property
-    def axial(self) -> Ints:
-        """Nodes this rank owns on the axes of sectors."""
-        none = np.zeros(0, dtype=np.int64)
-        return np.unique(np.concatenate([none, *(nodes for _, nodes, _ in self.on_axes())]))
-
-    def repeated(self, nodes: Ints, axis: Sequence[float], point: Sequence[float]) -> Ints:
-        """Those of nodes whose motion in cylinder coordinates a sector gives them; collective.
-
-        Displacements prescribed in cylinder coordinates about the axis of a sector are
-        alike in all sectors: slave nodes of its cut faces have them from the master.
-
-        Args:
-            nodes: Nodes this rank owns.
-            axis: Direction of the axis of the coordinates.
-            point: A point of it, length.
-
-        Raises:
-            InputError: The axis of the sector is another, or the master is not among the nodes.
-        """
-        found = [np.zeros(0, dtype=np.int64)]
-        for name, cut in self._cuts.items():
-            slave, master = (np.intersect1d(self._own(side), nodes) for side in cut.sides)
-            counts = np.array([len(slave), len(master)])
-            of_slave, of_master = self._model.mesh.comm.allreduce(counts)
-            if not of_slave:
-                continue
-            if not cut.turning.about(axis, point):
-                text = f"its nodes on the cut faces of {name} need the axis of that"
-                raise InputError(text)
-            if not of_master:
-                text = f"it has nodes on the slave of {name} and none on the master"
-                raise InputError(text)
-            found.append(slave)
-        return np.unique(np.concatenate(found))
-
-    def cuts_of(self, body: str) -> list[CutFaces]:
-        """Cut faces of a body."""
-        cuts = self._cuts.items()
-        return [cut for name, cut in cuts if self._model.body_of(self._pairs[name].slave) == body]
-
-    def sides_of(self, cut: CutFaces) -> tuple[Ints, Ints]:
-        """Nodes this rank owns on slave and master of cut faces, off the axis."""
-        slave, master = (np.setdiff1d(side, cut.on_axis) for side in cut.sides)
-        return self._own(slave), self._own(master)
-
-    def _own(self, members: Ints) -> Ints:
-        """Local numbers of nodes of the groups that this rank owns."""
-        own = members[self._groups.owned()[members]]
-        first = self._model.space.dofmap.index_map.local_range[0]
-        return np.asarray(self._groups.nodes[own] - first)
-
-    def check_prescribed(
-        self, unknowns: Ints, values: Floats, planes: Sequence[tuple[Ints, Floats]], step: str
-    ) -> None:
-        """Refuse supports at cut faces that are not the same in every sector; collective.
-
-        Args:
-            unknowns: Prescribed unknowns that this rank owns, local numbers.
-            values: Their values, length.
-            planes: Nodes this rank owns on symmetry planes, and the normals.
-            step: Name of the step, for messages.
-        """
-        if not self._cuts:
-            return
-        own = np.full((self._model.space.dofmap.index_map.size_local, 3), np.nan)
-        for nodes, normal in planes:
-            own[nodes] = np.where(np.abs(normal) > 1.0 - ALONG, 0.0, own[nodes])
-        own.reshape(-1)[unknowns] = values
-        values_everywhere = self._everywhere(own, np.nan)
-        for cut in self._cuts.values():
-            cut.check_prescribed(values_everywhere, step)
-
-    def hold_cuts(self, fixed: Floats) -> None:
-        """Hold slave nodes of cut faces as what they follow is held, turned; collective.
-
-        Args:
-            fixed: Projections on held directions of the local nodes, which are changed,
-                (nodes, 3, 3).
-        """
-        owned = self._model.space.dofmap.index_map.size_local
-        everywhere = self._everywhere(fixed[:owned], 0.0) if self._cuts else fixed
-        for cut in self._cuts.values():
-            seam, turn = cut.seam, cut.turning.matrix
-            own = self._groups.owned()[seam.following]
-            held = turn @ everywhere[seam.leading[own]] @ turn.T
-            fixed[self._own(seam.following)] = held
 
     def begin(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> None:
         """Take over what else holds the nodes in a step.
@@ -264,13 +129,7 @@ class TiedFaces:
 
     def check(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> None:
         """The check of `begin` alone, and that no cut face follows a rigid body; collective."""
-        first = self._model.space.dofmap.index_map.local_range[0]
-        for name, cut in self._cuts.items():
-            nodes = self._groups.nodes[np.union1d(*cut.sides)] - first
-            shared = len(np.intersect1d(nodes, dependents // 3))
-            if self._model.mesh.comm.allreduce(shared):
-                text = "faces of a rigid body share nodes with the cut faces: take a displacement"
-                raise InputError(text, name)
+        self.sectors.check_dependents(dependents)
         eliminated(self._conditions, self._flags(held, dependents), self._of_corners)
 
     def left_out(self) -> list[str]:
@@ -334,7 +193,7 @@ class TiedFaces:
         """Conditions of a pair in the first configuration."""
         from anisocontact.contact.tie_weights import tie_conditions  # of ties alone
 
-        size, cut = facet_size(self._model, tie.master), self._cuts.get(name)
+        size, cut = facet_size(self._model, tie.master), self.sectors.cuts.get(name)
         tolerance = TOLERANCE * size if tie.tolerance is None else tie.tolerance
         turning = None if cut is None else cut.turning
         with within(name):
@@ -370,20 +229,10 @@ class TiedFaces:
             axis = np.abs(np.broadcast_to(direction, (len(nodes), 3))) > ALONG
             own[nodes] |= axis | ~axis.any(axis=1, keepdims=True)
         own.reshape(-1)[dependents] = True
-        flags = self._everywhere(own, False)
-        for cut in self._cuts.values():
+        flags = self._groups.everywhere(own, False)
+        for cut in self.sectors.cuts.values():
             flags[cut.on_axis] = True
         return np.asarray(flags | self._middle[:, None])
-
-    def _everywhere[T: np.generic](self, own: npt.NDArray[T], nothing: float) -> npt.NDArray[T]:
-        """Values of all nodes of the groups from those of the nodes of each rank; collective."""
-        groups, first = self._groups, self._model.space.dofmap.index_map.local_range[0]
-        here = groups.owned()
-        values = np.full((len(groups.nodes), *own.shape[1:]), nothing, dtype=own.dtype)
-        values[here] = own[groups.nodes[here] - first]
-        owner = np.asarray(self._model.mesh.comm.allgather(here)).argmax(axis=0)
-        every = np.asarray(self._model.mesh.comm.allgather(values))
-        return np.asarray(every[owner, np.arange(len(owner))])
 
     def _constraint(self, found: Sparse) -> Constraint:
         """The constraint of what each unknown follows."""
