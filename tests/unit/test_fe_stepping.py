@@ -284,7 +284,8 @@ def test_chattering_is_named_and_damped(fe, monkeypatch):
     the points.
     """
     from anisocontact.solver.stepping.attempts import Attempts
-    from anisocontact.solver.strategies.newton import CYCLE, MAX_ITERATIONS
+    from anisocontact.solver.strategies.newton import MAX_ITERATIONS
+    from anisocontact.solver.strategies.residual_history import CYCLE
 
     step = Step("hold", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}})
     basic = {"snes_linesearch_type": "basic"}

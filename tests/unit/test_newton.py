@@ -13,7 +13,8 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.solver.strategies.newton import STUCK_OVER, Newton
+from anisocontact.solver.strategies.newton import Newton
+from anisocontact.solver.strategies.residual_history import STUCK_OVER
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Ints
 from anisocontact.contact import Contact
-from anisocontact.solver.strategies.newton import repeats
+from anisocontact.solver.strategies.residual_history import repeats
 
 #: Iterations that are remembered.
 MEMORY = 8

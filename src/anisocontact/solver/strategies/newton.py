@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -16,6 +16,7 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.strategies.database import Database, OptionValue
+from anisocontact.solver.strategies.residual_history import ResidualHistory
 from anisocontact.solver.strategies.symmetric import check_symmetric
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
@@ -42,17 +43,6 @@ _UNFIT = {
 #: Residual over the forces at work at which an increment is accepted.
 TOLERANCE = 1e-8
 MAX_ITERATIONS = 25
-#: Residual over its smallest value at which an iteration is given up.
-DIVERGED = 1e8
-#: A line search whose residual keeps more than this share of itself over so many corrections
-#: stands in front of a jump of the law, and would stay there.
-STUCK, STUCK_OVER = 0.5, 8
-#: With multipliers that follow a residual rises and falls while points find their status; it goes
-#: round in circles where the least of so many is more than this share of the least before, while
-#: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
-IDLE, IDLE_OVER = 0.5, 5
-#: Residuals that repeat every second time, to this share of them, are those of a cycle.
-CYCLE, SAME = 5, 1e-3
 
 
 class System(Protocol):
@@ -116,18 +106,6 @@ class System(Protocol):
         ...
 
 
-def repeats(residuals: Sequence[float]) -> bool:
-    """Whether each of some residuals is the last but one before it, to `SAME` of it.
-
-    Example:
-        >>> repeats([0.3, 0.2, 0.3, 0.2]), repeats([0.3, 0.2, 0.3, 0.19])
-        (True, False)
-    """
-    last = np.array(residuals)
-    with np.errstate(invalid="ignore"):  # far off they are infinite
-        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
-
-
 @dataclass(frozen=True)
 class NewtonResult:
     """Outcome of an increment.
@@ -189,9 +167,7 @@ class Newton:
     ) -> None:
         self._problem = problem
         self._on_iteration = on_iteration
-        self._residuals: list[float] = []
-        self._touching: list[int] = []
-        self._sticking: list[int] = []
+        self._history = ResidualHistory(problem.contact_term)
         self._damping: Callable[[], float] | None = None
         self._search = Backtracking(problem)
         self.snes = PETSc.SNES().create(problem.comm)
@@ -244,6 +220,11 @@ class Newton:
             self._search.whole = full
             return self._solve(x, full or full_steps)
 
+    @property
+    def _residuals(self) -> list[float]:
+        """Residual over the forces at work, of the start and after each correction."""
+        return self._history.residuals
+
     def _solve(self, x: Vec, full_steps: bool) -> NewtonResult:
         """Equilibria, with better multipliers or softer penalties, until there is the last one."""
         spent = 0
@@ -280,7 +261,7 @@ class Newton:
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
-        self._residuals, self._touching, self._sticking = [], [], []
+        self._history = ResidualHistory(self._problem.contact_term)
         self._search.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()
@@ -289,7 +270,8 @@ class Newton:
                 self.snes.solve(None, iterate)
         except PETSc.Error as error:
             if isinstance(error.__cause__, SingularError):
-                return NewtonResult(len(self._residuals) - 1, self._residuals, str(error.__cause__))
+                known = self._residuals
+                return NewtonResult(len(known) - 1, known, str(error.__cause__))
             # What a callback raises (an interrupt too) comes wrapped by PETSc.
             raise error.__cause__ or error from None
         iterate.copy(x)
@@ -347,45 +329,9 @@ class Newton:
         small = balance.reached and all(field.small(rtol, atol) for field in fields)
         if small and contacts.consistent():
             return reasons.CONVERGED_FNORM_RELATIVE
-        if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
-            return reasons.DIVERGED_DTOL
-        if self._idles():
-            return reasons.DIVERGED_LOCAL_MIN
-        if self._cycles():
-            return reasons.DIVERGED_MAX_IT
-        return reasons.DIVERGED_LINE_SEARCH if self._stuck() else reasons.ITERATING
-
-    def _idles(self) -> bool:
-        """Whether the last corrections, with multipliers that follow, have gained too little."""
-        if not self._problem.contact_term.simultaneous:
-            return False
-        contacts = self._problem.contact_term
-        self._touching.append(contacts.touching())
-        self._sticking.append(contacts.sticking())
-        known, touching = self._residuals, self._touching
-        if len(known) < IDLE_OVER + 3:
-            return False
-        before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
-        searches = lately == 0 or lately > before or self._slips_on()
-        return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
-
-    def _slips_on(self) -> bool:
-        """Whether the edge of what sticks moves on, by a point in nearly every correction."""
-        change = np.diff(self._sticking[-IDLE_OVER - 1 :])
-        return bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
-
-    def _cycles(self) -> bool:
-        """Whether full steps go to and fro between two states: nothing will end that."""
-        searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
-        if searching or self._damping is not None or len(self._residuals) < CYCLE:
-            return False
-        return repeats(self._residuals[-CYCLE:])
-
-    def _stuck(self) -> bool:
-        """Whether a line search gains next to nothing."""
-        known = self._residuals
-        searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
-        return searching and len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
+        searching = snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
+        diverged = self._history.divergence(searching, self._damping is not None)
+        return reasons.ITERATING if diverged is None else diverged
 
     def _explain(self, reason: int) -> str:
         reasons = PETSc.SNES.ConvergedReason

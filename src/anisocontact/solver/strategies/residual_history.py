@@ -1,0 +1,94 @@
+"""What the residuals of Newton's method say of whether to go on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.solver.terms.contacts import Contacts
+
+#: Residual over its smallest value at which an iteration is given up.
+DIVERGED = 1e8
+#: A line search whose residual keeps more than this share of itself over so many corrections
+#: stands in front of a jump of the law, and would stay there.
+STUCK, STUCK_OVER = 0.5, 8
+#: With multipliers that follow a residual rises and falls while points find their status; it goes
+#: round in circles where the least of so many is more than this share of the least before, while
+#: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
+IDLE, IDLE_OVER = 0.5, 5
+#: Residuals that repeat every second time, to this share of them, are those of a cycle.
+CYCLE, SAME = 5, 1e-3
+
+
+class ResidualHistory:
+    """Residuals of one solution, with the contacts at each of them.
+
+    Args:
+        contacts: The contacts, whose multipliers may follow every correction.
+
+    Attributes:
+        residuals: Residual over the forces at work, of the start and after each correction.
+    """
+
+    def __init__(self, contacts: Contacts) -> None:
+        self.residuals: list[float] = []
+        self._contacts = contacts
+        self._touching: list[int] = []
+        self._sticking: list[int] = []
+
+    def divergence(self, searching: bool, damped: bool) -> PETSc.SNES.ConvergedReason | None:
+        """Why no equilibrium can be expected any more; None where it can. Asked at each residual.
+
+        Args:
+            searching: Whether there is a line search.
+            damped: Whether corrections are taken in shares.
+        """
+        reasons = PETSc.SNES.ConvergedReason
+        if self.residuals[-1] > DIVERGED * min(self.residuals[1:], default=np.inf):
+            return reasons.DIVERGED_DTOL
+        if self._idles():
+            return reasons.DIVERGED_LOCAL_MIN
+        if not (searching or damped) and self._cycles():
+            return reasons.DIVERGED_MAX_IT
+        return reasons.DIVERGED_LINE_SEARCH if searching and self._stuck() else None
+
+    def _idles(self) -> bool:
+        """Whether the last corrections, with multipliers that follow, have gained too little."""
+        if not self._contacts.simultaneous:
+            return False
+        self._touching.append(self._contacts.touching())
+        self._sticking.append(self._contacts.sticking())
+        known, touching = self.residuals, self._touching
+        if len(known) < IDLE_OVER + 3:
+            return False
+        before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
+        searches = lately == 0 or lately > before or self._slips_on()
+        return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+
+    def _slips_on(self) -> bool:
+        """Whether the edge of what sticks moves on, by a point in nearly every correction."""
+        change = np.diff(self._sticking[-IDLE_OVER - 1 :])
+        return bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
+
+    def _cycles(self) -> bool:
+        """Whether full steps go to and fro between two states: nothing will end that."""
+        return len(self.residuals) >= CYCLE and repeats(self.residuals[-CYCLE:])
+
+    def _stuck(self) -> bool:
+        """Whether a line search gains next to nothing."""
+        known = self.residuals
+        return len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
+
+
+def repeats(residuals: Sequence[float]) -> bool:
+    """Whether each of some residuals is the last but one before it, to `SAME` of it.
+
+    Example:
+        >>> repeats([0.3, 0.2, 0.3, 0.2]), repeats([0.3, 0.2, 0.3, 0.19])
+        (True, False)
+    """
+    last = np.array(residuals)
+    with np.errstate(invalid="ignore"):  # far off they are infinite
+        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
