@@ -16,7 +16,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import Contact
-from anisocontact.contact.one_pass import Pass
+from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -136,7 +136,7 @@ def test_both_accounts_of_a_jump_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     _only_flows(monkeypatch)
     asked = _jump(jumping(False, False, False), False).energies
-    monkeypatch.setattr(Pass, "retraceable", False)
+    monkeypatch.setattr(ContactPair, "retraceable", False)
     taken_up = _jump(jumping(False, False, False), False).energies
     assert asked["residual"] != taken_up["residual"]
     for name in ("external", "flow"):

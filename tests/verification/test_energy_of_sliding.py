@@ -14,7 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from tests.verification.test_energy_balance import jumping
 
-from anisocontact.contact.one_pass import Pass
+from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.stepping.energy_watch import CAUSES
 
@@ -91,17 +91,17 @@ def test_laws_that_count_wrongly_are_told(
     increment miss half of their difference times the way at most.
     """
     problem, steps = dragged(pair, exact, mortar, 1)
-    taken_up, energies = Pass.taken_up, Pass.energies
+    taken_up, energies = ContactPair.taken_up, ContactPair.energies
 
-    def wrong(self: Pass) -> float:
+    def wrong(self: ContactPair) -> float:
         return times * taken_up(self)
 
-    def booked(self: Pass) -> dict[str, float]:
+    def booked(self: ContactPair) -> dict[str, float]:
         known = energies(self)
         return known | {"friction": times * known["friction"]}
 
-    monkeypatch.setattr(Pass, "taken_up", wrong)
-    monkeypatch.setattr(Pass, "energies", booked)
+    monkeypatch.setattr(ContactPair, "taken_up", wrong)
+    monkeypatch.setattr(ContactPair, "energies", booked)
     *_, last = Solver(problem, steps).run()
     assert last.imbalance.large
 

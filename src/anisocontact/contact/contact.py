@@ -13,15 +13,15 @@ from anisocontact.base.one_history import OneHistory
 from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
 from anisocontact.contact.beyond_cuts import Seam
+from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.contact.defaults import WithoutPenalty, exact
 from anisocontact.contact.making import (
     DeprecatedArguments,
-    Options,
     SurfaceMaster,
     before_this,
     parts_of,
 )
-from anisocontact.contact.one_pass import Pass
+from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import STATUS, ContactLaw, Interface, Response
@@ -33,7 +33,7 @@ from anisocontact.rigid import MovingSurface, RigidBody
 
 
 @typed
-class Contact(Pass, OneHistory):
+class Contact(ContactPair, OneHistory):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
     At every slave point `t = N n + T`, from what is opposite on the master. The
@@ -136,13 +136,13 @@ class Contact(Pass, OneHistory):
         master, of_before = before_this(master, before)
         law, augmentation = exact(law, augmentation)
         mortar = of_before if mortar is None else mortar
-        options = Options(
+        options = ContactOptions(
             degree, current_area, augmentation, adjust, reach, self_contact, apart, mortar
         ).decided(model, slave, master if isinstance(master, str) else None)
         self._made_of = model, master, law, options
         check_at_rest(model, "model")
         parts = parts_of(model, slave, master, law, options)
-        super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
+        super().__init__(model.unknowns, slave, name or slave, parts, options)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
         self.physical_adhesion, self.goes_on = True, False
@@ -188,7 +188,7 @@ class Contact(Pass, OneHistory):
         """
         model, master, law, options = self._made_of
         parts = parts_of(model, self.slave, master, law, options, seams)
-        Pass.__init__(self, model.unknowns, self.slave, self.name, *parts, **options.of_pass)
+        ContactPair.__init__(self, model.unknowns, self.slave, self.name, parts, options)
         self.facet_of_point, self.goes_on = self.slave_points.facet, True
 
     @property

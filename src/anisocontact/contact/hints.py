@@ -10,11 +10,11 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
+from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.contact.field_axes import OFF, distances
 from anisocontact.contact.initial import initial_overlap
-from anisocontact.contact.one_pass import TOUCHING
 from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.interface.contact_law import AdhesionAndFriction
 

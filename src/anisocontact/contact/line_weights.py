@@ -312,11 +312,9 @@ def line_weights(
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     f, i = around.facets, around.local
     below = found.masters[f]
-    masters = listed(
-        np.concatenate([np.repeat(owner, below.shape[1]), np.repeat(np.arange(n), more.shape[1])]),
-        np.concatenate([below.reshape(-1), more.reshape(-1)]),
-        n,
-    )
+    of = np.repeat(owner, below.shape[1]), np.repeat(np.arange(n), more.shape[1])
+    met = below.reshape(-1), more.reshape(-1)
+    masters = listed(np.concatenate(of), np.concatenate(met), n)
     place = np.where(below >= 0, place_in(masters[owner], below), 0)
     places = np.concatenate([place_in(around.nodes[owner], edges.slave[f]), patch + place], axis=1)
     columns = (3 * places[:, :, None] + np.arange(2)).reshape(len(f), -1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypedDict
 
 import numpy as np
@@ -14,15 +14,15 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.beyond_cuts import BeyondCuts, Seam
-from anisocontact.contact.defaults import takes_nodes
+from anisocontact.contact.contact_pair import PairParts
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
 from anisocontact.contact.field_axes import off_axes
 from anisocontact.contact.images import Images
-from anisocontact.contact.master import Master
+from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
-from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
+from anisocontact.contact.quadrature import facet_quadrature, inward
 from anisocontact.contact.sharp_edges import Towards, towards_facets, towards_itself
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_edges import SlaveEdges
@@ -35,7 +35,6 @@ from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.symmetric import check_symmetry
 from anisocontact.contact.whole_facets import around_own_nodes
 from anisocontact.interface import ContactLaw, Interface
-from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.surfaces import Surface
@@ -46,48 +45,6 @@ APART = 3.0
 
 #: A surface, or one that has its laws, which may move.
 type SurfaceMaster = Surface | Interface | MovingSurface
-#: Slave points, what they meet, and the laws as the user gave them.
-type Parts = tuple[SlavePoints, Master, ContactLaw | Interface]
-
-
-@dataclass(frozen=True)
-class Options:
-    """Arguments of `Contact` that have a default."""
-
-    degree: int | None = None
-    current_area: bool | None = None
-    augmentation: Augmentation | None = None
-    adjust: float | None = None
-    reach: float | None = None
-    self_contact: bool = False
-    apart: float | None = None
-    mortar: bool | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("adjust", "reach", "apart"):
-            given = getattr(self, name)
-            if given is not None and not np.isfinite(given):
-                raise InputError(f"{given!r} given, a finite number needed", name)
-
-    def decided(self, model: Model, slave: str, master: str | None) -> Options:
-        """Options that say where the law is evaluated."""
-        if self.mortar is not None and not self.self_contact:
-            return self
-        nodes = self.self_contact or takes_nodes(model, slave, master, self.degree)
-        return replace(self, mortar=nodes)
-
-    def chosen_degree(self, model: Model) -> int:
-        """Degree of the quadrature."""
-        return chosen_degree(self.degree, model.order, self.augmentation is not None)
-
-    @property
-    def of_pass(self) -> dict[str, Any]:
-        """What a contact takes besides its parts."""
-        return {
-            "augmentation": self.augmentation,
-            "adjust": self.adjust,
-            "area_given": self.current_area is not None,
-        }
 
 
 class DeprecatedArguments(TypedDict, total=False):
@@ -126,9 +83,9 @@ def parts_of(
     slave: str,
     master: str | SurfaceMaster | None,
     law: ContactLaw | None,
-    options: Options,
+    options: ContactOptions,
     seams: Sequence[Seam] = (),
-) -> Parts:
+) -> PairParts:
     """The parts of a contact, see `Contact` and `Contact.go_on_beyond`."""
     if options.mortar and options.degree is not None:
         raise InputError("given, but slave nodes have no quadrature of a degree", "degree")
@@ -141,8 +98,8 @@ def parts_of(
 
 
 def _on_surface(
-    model: Model, slave: str, master: Any, law: ContactLaw | None, options: Options
-) -> Parts:
+    model: Model, slave: str, master: Any, law: ContactLaw | None, options: ContactOptions
+) -> PairParts:
     facets = model.boundary(slave, "slave")
     for name in ("reach", "self_contact", "apart"):
         if getattr(options, name):
@@ -166,7 +123,7 @@ def _on_surface(
         interface = off_axes(interface, points.quadrature.reference, points.size, comm)
     check_symmetry(model.idealisation, interface, points, comm)
     found = AnalyticMaster(interface, body, points, comm)
-    return points, found, interface
+    return PairParts(points, found, interface)
 
 
 def _slave_nodes(
@@ -200,6 +157,22 @@ def _slave_nodes(
     else:
         found = of_edges(SlaveEdges(whole.mesh, x, towards, whole.nodes))
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
+
+
+def _nodes_towards(
+    model: Model, slave: str, master: str, options: ContactOptions, beyond: BeyondCuts | None
+) -> SlaveNodes:
+    """Slave nodes of a contact whose master is facets."""
+    if options.self_contact:
+        towards = towards_itself(model, master)
+    else:
+        towards = towards_facets(model, master, beyond)
+    facets, current = model.facets(slave), options.current_area is not False
+    order = model.order if options.self_contact else _order(model, facets)
+    if model.idealisation.dim == 2 and order < model.order:
+        text = "slave nodes of a body of order 1 beside bodies of order 2"
+        raise InputError(f'{text}: in two dimensions take "single", points', "pass")
+    return _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order, beyond)
 
 
 def _beyond(model: Model, seams: Sequence[Seam]) -> BeyondCuts:
@@ -251,8 +224,8 @@ def _with_laws(surface: Any, law: ContactLaw | None) -> Interface:
     return surface
 
 
-def _folded(model: Model, slave: str, master: str, options: Options) -> Options:
-    """Options of self-contact, a group against itself.
+def _folded(model: Model, slave: str, master: str, options: ContactOptions) -> ContactOptions:
+    """ContactOptions of self-contact, a group against itself.
 
     What is near in the reference configuration and does not face each other does not count:
     neighbours, and the other side of a thin wall.
@@ -272,9 +245,9 @@ def _on_facets(
     slave: str,
     master: str,
     law: ContactLaw,
-    options: Options,
+    options: ContactOptions,
     seams: Sequence[Seam],
-) -> Parts:
+) -> PairParts:
     """Points and what they meet, which is facets.
 
     Args:
@@ -287,29 +260,9 @@ def _on_facets(
     """
     _check_pair(model)
     check_sides(model, slave, master, options.apart)
-    current, nodes = options.current_area is not False, None
     beyond = _beyond(model, seams) if seams else None
-    if options.mortar:
-        if options.self_contact:
-            towards = towards_itself(model, master)
-        else:
-            towards = towards_facets(model, master, beyond)
-        facets = model.facets(slave)
-        order = model.order if options.self_contact else _order(model, facets)
-        if model.idealisation.dim == 2 and order < model.order:
-            text = "slave nodes of a body of order 1 beside bodies of order 2"
-            raise InputError(f'{text}: in two dimensions take "single", points', "pass")
-        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order, beyond)
-    sides = make_sides(
-        model,
-        (slave, master),
-        options.chosen_degree(model),
-        options.reach,
-        options.apart,
-        current,
-        nodes,
-        beyond,
-    )
+    nodes = _nodes_towards(model, slave, master, options, beyond) if options.mortar else None
+    sides = make_sides(model, (slave, master), options, nodes, beyond)
     if model.idealisation.dim == 3:
         met = model.positions[model.facet_nodes(master)]
         x = np.concatenate([(nodes or sides.points).quadrature.reference, met])
@@ -320,8 +273,8 @@ def _on_facets(
 
         size = facet_size(model, master)
         pair = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
-        return nodes, pair, law
+        return PairParts(nodes, pair, law)
     from anisocontact.contact.facet_master import FacetMaster
 
     found = FacetMaster(sides, law, group=master, size=facet_size(model, master))
-    return sides.points, found, law
+    return PairParts(sides.points, found, law)

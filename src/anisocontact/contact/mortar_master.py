@@ -30,7 +30,7 @@ from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
-from anisocontact.contact.points import FREE, free_along
+from anisocontact.contact.prescribed_nodes import PrescribedNodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.sides import Sides
@@ -76,16 +76,13 @@ class MortarMaster(MeshedMaster):
         folded: bool = False,
     ) -> None:
         self._points = points
-        self._resting: Sequence[Resting] = ()
-        self._flags: Sequence[Resting] = ()
-        self._prescribed: Floats | None = None
-        self._fixed: Floats | None = None
         self._fold = Fold(points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
         self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
+        self._prescribed = PrescribedNodes(self._gathered)
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
@@ -97,7 +94,7 @@ class MortarMaster(MeshedMaster):
         sides, points, now = self.sides, self._points, self._nodes.now
         x, tangents = points.positions(now), points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
-        held = held_directions(self._flags, points.nodes[:, 0], self._below, normal)
+        held = held_directions(self._prescribed.resting, points.nodes[:, 0], self._below, normal)
         opposite = met_along(sides, x, across(held, normal), self._hint, self._then)
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
@@ -193,14 +190,8 @@ class MortarMaster(MeshedMaster):
         self._have(u, *hints, *(then.facet for then in thens), *owners)
         for facets in hints:
             facets[:] = gathered.renumbered(facets)
-        self._spread_flags()
+        self._prescribed.spread()
         return [numbers_of(then, gathered) for then in thens]
-
-    def _spread_flags(self) -> None:
-        """Take what is held among gathered nodes as well; collective."""
-        spread, moved = self._gathered.everywhere, self._gathered.moved
-        self._flags = [(spread(there), direction) for there, direction in self._resting]
-        self._fixed = None if self._prescribed is None else spread(moved(self._prescribed))
 
     @override
     def answer(
@@ -229,8 +220,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def take_resting(self, resting: Sequence[Resting], state: State) -> None:
-        self._resting = resting
-        self._spread_flags()
+        self._prescribed.take_resting(resting)
         self._at = self._placed(self._at.weights)
         then = self._at.planes.upright(state["xi"], self._points.size)
         if then is not None:
@@ -241,16 +231,13 @@ class MortarMaster(MeshedMaster):
     @override
     def take_fixed(self, fixed: Floats) -> None:
         super().take_fixed(fixed)
-        self._prescribed = fixed
-        self._spread_flags()
+        self._prescribed.take_fixed(fixed)
 
     @override
     def immovable(self, normal: Floats) -> bool | Flags:
-        if self._rests or self._fixed is None:
-            return self._rests
-        masters, shares = self._at.weights.masters, np.abs(self._at.weights.shares)
-        free = shares * free_along(self._fixed, masters, shares > 0.0, normal)
-        return self._located & (free.sum(axis=1) < FREE)
+        weights = self._at.weights
+        held = self._prescribed.immovable(weights.masters, weights.shares, normal)
+        return self._rests or self._located & held
 
     @property
     @override

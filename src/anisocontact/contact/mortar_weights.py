@@ -108,6 +108,23 @@ def mortar_weights(
             sides, around, now, more, pairs, current_area=current_area, hand_over=hand_over
         )
         return MortarWeights(found.masters, found.area, found.weight, found)
+    whole = WHOLE[around.mesh.topology] if hand_over else []
+    return _in_space(sides, around, now, more, pairs, whole, current_area)
+
+
+def _in_space(
+    sides: Facing,
+    around: Patches,
+    now: Floats,
+    more: Locals,
+    pairs: Pairs,
+    whole: Sequence[float],
+    current_area: bool,
+) -> MortarWeights:
+    """As of `mortar_weights`, of facets in space, by the core.
+
+    Where nodes hand their weights over `whole` is the share of a facet that each has, else empty.
+    """
     slave, master = around.mesh, sides.master
     offsets, opposite = _by_slave(pairs, len(slave.nodes), len(master.nodes))
     there = more >= 0
@@ -132,7 +149,7 @@ def mortar_weights(
         straight_weights=straight[1],
         skew_points=skew[0],
         skew_weights=skew[1],
-        whole=np.array(WHOLE[slave.topology] if hand_over else []),
+        whole=np.array(whole),
         current_area=current_area,
         memory=around.memory,
         threads=sides.threads,

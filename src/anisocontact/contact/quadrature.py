@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -325,38 +326,51 @@ def facet_quadrature(
     element = scalar_element(space)
     shape_element, shape_nodes, shape_points = geometry(space.mesh)
     rule, weights = _facet_rule(element.cell_type, degree)
-    corners = basix.geometry(element.cell_type)
-    topology = basix.topology(element.cell_type)[-2]
     closure = element.entity_closure_dofs[-2]
-    basis, gradient, position, jacobian = [], [], [], []
-    for side, vertices in enumerate(topology):
-        origin = corners[vertices[0]]
-        edges = corners[vertices[1:dim]] - origin
-        at = origin + rule @ edges
-        shape = element.tabulate(1, at)[..., 0][:, :, closure[side]]
-        basis.append(shape[0])
-        gradient.append(np.einsum("td,dqb->qbt", edges, shape[1:]))
-        table = shape_element.tabulate(1, at)[..., 0]
-        position.append(table[0])
-        jacobian.append(np.einsum("td,dqb->tqb", edges, table[1:]))
+    basis, gradient = _on_sides(element, rule, closure)
+    position, slope = _on_sides(shape_element, rule)
     nodes = shape_points[shape_nodes[cells]]
-    tangents = np.einsum("mtqb,mbi->mtqi", np.stack(jacobian)[local], nodes)
-    tangents = tangents.swapaxes(1, 2)
-    places = np.einsum("mqb,mbi->mqi", np.stack(position)[local], nodes)
-    gradients = np.stack(gradient)[local]
+    tangents = np.einsum("mqbt,mbi->mqti", slope[local], nodes)
+    places = np.einsum("mqb,mbi->mqi", position[local], nodes)
+    gradients = gradient[local]
     if dim == 2:
         tangents = np.concatenate([tangents, idealisation.across(places)[:, :, None]], axis=2)
         gradients = np.concatenate([gradients, np.zeros_like(gradients)], axis=3)
     area = _norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]))
     return FacetQuadrature(
         nodes=space.dofmap.list[cells[:, None], np.array(closure)[local]],
-        basis=np.stack(basis)[local],
+        basis=basis[local],
         weights=weights * area,
         reference=places.reshape(-1, 3),
         gradient=gradients,
         tangents=tangents,
         turn=idealisation.turn if dim == 2 else None,
     )
+
+
+def _on_sides(
+    element: Any, rule: Floats, dofs: Sequence[Any] | None = None
+) -> tuple[Floats, Floats]:
+    """Functions of a cell at the points of a rule on each of its sides.
+
+    Args:
+        element: The functions.
+        rule: Points on the reference facet, (q, t).
+        dofs: Those that count on each side; all if not given.
+
+    Returns:
+        Values (sides, q, b), and derivatives along the facet (sides, q, b, t).
+    """
+    corners = basix.geometry(element.cell_type)
+    values, slopes = [], []
+    for side, vertices in enumerate(basix.topology(element.cell_type)[-2]):
+        origin = corners[vertices[0]]
+        edges = corners[vertices[1 : 1 + rule.shape[1]]] - origin
+        table = element.tabulate(1, origin + rule @ edges)[..., 0]
+        table = table if dofs is None else table[:, :, dofs[side]]
+        values.append(table[0])
+        slopes.append(np.einsum("td,dqb->qbt", edges, table[1:]))
+    return np.stack(values), np.stack(slopes)
 
 
 def _facet_rule(cell: Any, degree: int) -> tuple[Floats, Floats]:

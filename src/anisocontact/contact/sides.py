@@ -27,6 +27,7 @@ from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.near_facets import NearFacets
+from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.side_of_master import Seen
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -268,10 +269,7 @@ def _there(gathered: MasterSurface, sets: FacetSets) -> FacetSets:
 def make_sides(
     model: Model,
     groups: Sequence[str],
-    degree: int,
-    reach: float | None,
-    apart: float | None,
-    current_area: bool,
+    options: ContactOptions,
     nodes: SlaveNodes | None = None,
     beyond: BeyondCuts | None = None,
 ) -> Sides:
@@ -280,34 +278,28 @@ def make_sides(
     Args:
         model: Mesh with both groups.
         groups: Facet groups of slave and master.
-        degree: Degree of the quadrature.
-        reach: See `Contact`.
-        apart: See `Contact`.
-        current_area: See `Contact`.
+        options: Of the contact.
         nodes: Slave nodes, where the law is not evaluated at points of the facets.
         beyond: What goes on beyond cut faces.
     """
     slave, master = (model.facets(group) for group in groups)
-    comm, sweep = model.mesh.comm, Sweep.of(model)
+    comm, sweep, current = model.mesh.comm, Sweep.of(model), options.current_area is not False
     beside = NONE if nodes is None else nodes.far.numbers
     gathered = MasterSurface(model.space, master, sweep, beside, beyond)
     reference = gathered.start
     own = facet_mesh(model.space, slave, sweep)
+    degree = options.chosen_degree(model)
     rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)
     points = nodes or SlavePoints(
-        isoparametric(own, rule, reference),
-        own.flip,
-        current_area=current_area,
-        comm=comm,
+        isoparametric(own, rule, reference), own.flip, current_area=current, comm=comm
     )
-    reach = reach if reach is not None else 2.0 * points.size
-    _collect(gathered, own, points, reference, max(reach, apart or 0.0) + reach, NONE)
+    reach = options.reach if options.reach is not None else 2.0 * points.size
+    _collect(gathered, own, points, reference, max(reach, options.apart or 0.0) + reach, NONE)
     surface = _surface(gathered, reference)
     near = None
-    if apart is not None:
+    if options.apart is not None:
         keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
-        numbers, met = gathered.number(keys), points.searched(own)
-        near = near_facets(met, numbers, surface, gathered.facets, gathered.reference, apart)
+        near = _near(gathered, keys, points.searched(own), surface, options.apart)
     return Sides(
         slave=own,
         rule=rule,
@@ -322,6 +314,14 @@ def make_sides(
         threads=default_threads(),
         comm=comm,
     )
+
+
+def _near(
+    gathered: MasterSurface, keys: Ints, met: FacetMesh, surface: FacetSurface, apart: float
+) -> NearFacets:
+    """Facets that slave facets, known by their keys, are not to meet, see `Contact`."""
+    numbers = gathered.number(keys)
+    return near_facets(met, numbers, surface, gathered.facets, gathered.reference, apart)
 
 
 def located(hit: FacetProjections) -> Flags:

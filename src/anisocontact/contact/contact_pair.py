@@ -1,9 +1,9 @@
-"""What a contact does: slave points, a master and its laws composed, with their history."""
+"""A contact pair: slave points, a master and its laws composed, with their history."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,21 +14,17 @@ from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
-from anisocontact.contact.history import Slid, Snapshot, dissipated, mean_pressures
+from anisocontact.contact.energies import ContactEnergies
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.initial import check_start
 from anisocontact.contact.master import Answer, Master, Resting
+from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.trials import Trials
-from anisocontact.interface import FAILURE, Response
-from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface import FAILURE, ContactLaw, Interface, Response
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
-
-#: Fields of a point's state that are energies per area, by their name in the balance: what is
-#: stored, and what is dissipated, which grows by increments on the area of each.
-_STORED = {"adhesion": "energy_adhesion", "normal": "energy_normal"}
-_DISSIPATED = {"friction": "dissipation", "viscous": "dissipation_viscous"}
 
 #: Gap that is none, over the size of a slave facet.
 TOUCHING = 1e-6
@@ -36,7 +32,22 @@ TOUCHING = 1e-6
 _KEPT = ("traction", "normal", "directions_adhesion", "directions_friction", "failure")
 
 
-class Pass:
+@dataclass(frozen=True)
+class PairParts:
+    """What a contact is composed of.
+
+    Attributes:
+        points: Where the laws are evaluated.
+        master: What the points meet.
+        law: Laws, as the user gave them.
+    """
+
+    points: SlavePoints
+    master: Master
+    law: ContactLaw | Interface
+
+
+class ContactPair:
     """Slave points against a master: forces, tangent and history, which `commit` alone advances.
 
     A `Contact` is one, made from the names of groups.
@@ -45,12 +56,8 @@ class Pass:
         unknowns: Where the displacement of nodes is among the unknowns.
         slave: Facet group "body.group".
         name: Name in output.
-        points: Where the laws are evaluated.
-        master: What the points meet.
-        law: Laws, as the user gave them.
-        augmentation: How exactly the contact is to hold; by its penalties alone if None.
-        adjust: As of `adjusted`.
-        area_given: Whether the user has said which area counts.
+        parts: Slave points, master and laws.
+        options: How the user wants it to hold.
 
     Attributes:
         slave: As given.
@@ -77,32 +84,28 @@ class Pass:
         unknowns: NodeUnknowns,
         slave: str,
         name: str,
-        points: SlavePoints,
-        master: Master,
-        law: Any,
-        *,
-        augmentation: Augmentation | None = None,
-        adjust: float | None = None,
-        area_given: bool = False,
+        parts: PairParts,
+        options: ContactOptions,
     ) -> None:
+        points, master = parts.points, parts.master
         self.unknowns, self.space = unknowns, unknowns.nodes
         self.slave, self.name = slave, name
         self.slave_points, self.master = points, master
         nodes = self.space.dofmap.index_map
         self._count = nodes.size_local + nodes.num_ghosts
-        self._comm, self._area_given = unknowns.comm, area_given
+        self._comm, self._area_given = unknowns.comm, options.current_area is not None
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
-        self.state = adjusted(master.initial_state(), adjust)
+        self.state = adjusted(master.initial_state(), options.adjust)
         self.answer: Answer = master.answer(self.state, 1.0)
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
-        self._dissipated: Floats = np.zeros((len(self.state), len(_DISSIPATED)))
-        self.trials = Trials(points, master, law, self.state, self._comm)
+        self.trials = Trials(points, master, parts.law, self.state, self._comm)
+        self._energies = ContactEnergies(self.trials, len(self.state), self._comm)
         check_start(self, points.size)
-        self._augmentation = augmentation
+        self._augmentation = augmentation = options.augmentation
         self._fixed: Floats | None = None
         if augmentation is not None:
             self.trials.multipliers.augment(augmentation, points.size)
@@ -273,11 +276,8 @@ class Pass:
         self.ran_off = self.master.commit(self.accepted, self.state, self._trial)
         if self._trial is not None:
             self._gained = self._trial.response.traction - self.last.traction
-            before, self.accepted = self.accepted, self._trial
-            end, mean = self.last.state, self._mean_force(before, self.accepted)
-            end["dissipation"] = dissipated(self.state, self._way, end, mean)
-            for i, name in enumerate(_DISSIPATED.values()):
-                self._dissipated[:, i] += self.areas * (self.last.state[name] - self.state[name])
+            self._energies.commit(self.accepted, self.state, self._trial)
+            self.accepted = self._trial
             self.state = self.last.state
             if not self.trials.does_work:
                 self.state["energy_adhesion"] = 0.0
@@ -295,7 +295,7 @@ class Pass:
         self._begin()
 
     def _begin(self) -> None:
-        self._way: list[Slid] = []
+        self._energies.begin()
         if self._fixed is not None:
             held = self.slave_points.held(self._fixed, self.last.normal)
             self.trials.immovable = held & self.master.immovable(self.last.normal)
@@ -312,52 +312,21 @@ class Pass:
 
     def pass_through(self) -> None:
         """Remember the trial as a state that bodies which flow have gone through."""
-        self._way.append(Slid.of(self.current.response.state))
+        self._energies.pass_through(self.current.response.state)
 
     def taken_up(self) -> float:
-        """What the laws store and dissipate from the accepted state to the trial, of this rank.
+        """As of `ContactEnergies`, from the accepted state to the trial, of this rank."""
+        return self._energies.taken_up(self.accepted, self.state, self.current)
 
-        Returns:
-            Energy; friction has the mean of the pressures of both ends at each point.
-        """
-        now, before = self.current, self.accepted
-        state, areas = now.response.state, now.areas
-        mean = mean_pressures(self.state, state)
-        gained = dissipated(self.state, self._way, state, mean) - self.state["dissipation"]
-        gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
-        stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
-        held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]
-        return float(areas @ gained + sum(held))
-
-    def _mean_force(self, before: Snapshot, end: Snapshot) -> float:
-        """Mean of the forces that press in two states over that of the end, over all ranks.
-
-        That of the contact, not of each point: as it moves on, points that it leaves have no slip
-        in the end to be counted with half of their pressure, as those are that it comes to.
-        """
-        # before the first increment the state has none, whatever rounding makes of a gap of zero
-        there = (before.areas, self.state), (end.areas, end.response.state)
-        pressed = [np.sum(areas * state["pressure"]) for areas, state in there]
-        first, last = self._comm.allreduce(np.array(pressed)).tolist()
-        return 0.5 * (1.0 + first / last) if last > 0.0 else 1.0
+    def energies(self) -> dict[str, float]:
+        """As of `ContactEnergies.totals`, after the accepted increment, over all ranks."""
+        return self._energies.totals(self.state, self.areas)
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
         tangents = self.master.at(self.state)[1]
         slip = np.einsum("ni,nij->nj", self.state["elastic"], tangents)
         return self.master.out_of_frame(slip)
-
-    def energies(self) -> dict[str, float]:
-        """Stored and dissipated energy after the accepted increment, over all ranks.
-
-        Returns:
-            "adhesion" (elastic, tangential), "normal" (of the normal law), "friction" and
-            "viscous" (dissipated since the start), force times length.
-        """
-        stored = [self.areas @ self.state[name] for name in _STORED.values()]
-        local = np.array([*stored, *self._dissipated.sum(axis=0)])
-        values = self._comm.allreduce(local).tolist()
-        return dict(zip((*_STORED, *_DISSIPATED), values, strict=True))
 
     def side_of_master(self, u: Floats) -> SideOfMaster:
         """Where the points of the trial are beside the master, in its frame; collective.
@@ -380,7 +349,7 @@ class Pass:
             "points": now.points,
             "areas": now.areas,
             "gained": self._gained,
-            "dissipated": self._dissipated,
+            "dissipated": self._energies.dissipated,
             "level": np.full(len(now.areas), self.trials.multipliers.level),
         }
         kept = {name: values.copy() for name, values in (own | fields).items()}
@@ -402,7 +371,7 @@ class Pass:
         )
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._gained, self._trial = np.array(kept["gained"]), None
-        self._dissipated = np.array(kept["dissipated"])
+        self._energies.dissipated = np.array(kept["dissipated"])
         self.trials.multipliers.level = max(
             self._comm.allgather(float(kept["level"].max(initial=0.0)))
         )
