@@ -102,15 +102,34 @@ class CellPressures:
     ) -> None:
         self._u, comm, self._rises = u, model.mesh.comm, bool(heated)
         space = fem.functionspace(model.mesh, pressure_element(model.space))
-        pressure: Any = fem.Function(space)
-        self._pressure, self._width = pressure, space.element.space_dimension
-        q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
-        weight, self.of = model.idealisation.weight(model.mesh), {}
+        self._pressure: Any = fem.Function(space)
+        self._width = space.element.space_dimension
+        self.of: dict[str, Any] = {}
         self.follow, self.hardness = False, 0.0
         self.hardnesses: Floats = np.zeros(0)
         self._from: tuple[Vec, Floats] | None = None
         self._in_tangent: Floats | None = None
-        mass, change, extent, self._work = 0, 0, 0, 0
+        mass, change = self._forms(model, laws, dx, heated)
+        if not self.of:
+            return
+        self._change = compiled(change, comm)
+        self._slope_form = compiled(ufl.derivative(change, u), comm)
+        self._slope = create_stiffness(self._slope_form)
+        self._mass_form = compiled(mass, comm)
+        self._mass = create_stiffness(self._mass_form)
+        self._inverse: Mat = self._mass.duplicate()
+        self._invert()
+        self._stiffness: Mat = self._inverse.ptap(self._slope)
+
+    def _forms(
+        self, model: Model, laws: Mapping[str, Any], dx: Any, heated: Mapping[str, Heated]
+    ) -> tuple[Any, Any]:
+        """`<q, p> / K` and `<q, e>` in UFL; takes note of the bodies that have pressures."""
+        u, pressure = self._u, self._pressure
+        space = pressure.function_space
+        q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
+        weight = model.idealisation.weight(model.mesh)
+        mass, change, self._extent_form, self._work = 0, 0, 0, 0
         for i, name in enumerate(model.body_names()):
             here = dx(i, degree=2 * model.order)
             volume = volume_of(laws[name], u) if name in laws else None
@@ -123,19 +142,9 @@ class CellPressures:
             size, e = weight * stretch**3, ideal.seen(volume.change(ufl.grad(u)), u)
             mass += size / volume.bulk * q * p * here
             change += size * q * e * here
-            extent += size * q * here
+            self._extent_form += size * q * here
             self._work += size * pressure * e * here
-        if not self.of:
-            return
-        self._extent_form = extent
-        self._change = compiled(change, comm)
-        self._slope_form = compiled(ufl.derivative(change, u), comm)
-        self._slope = create_stiffness(self._slope_form)
-        self._mass_form = compiled(mass, comm)
-        self._mass = create_stiffness(self._mass_form)
-        self._inverse: Mat = self._mass.duplicate()
-        self._invert()
-        self._stiffness: Mat = self._inverse.ptap(self._slope)
+        return mass, change
 
     def work(self, v: Any) -> Any:
         """Virtual work of the pressures along a displacement, a linear form in UFL."""

@@ -10,7 +10,7 @@ from typing import Any, override
 
 import numpy as np
 
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Floats
 from anisocontact.base.blas_threads import one_thread
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
@@ -25,11 +25,12 @@ from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
 from anisocontact.solver.stepping.script_state import ScriptState
+from anisocontact.solver.stepping.unsupported_parts import UnsupportedParts
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly, TrialState
-from anisocontact.solver.system.fields import fields_beside
+from anisocontact.solver.system.fields import Fields, fields_beside
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.parts import suit
@@ -39,12 +40,8 @@ from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
-from anisocontact.solver.terms.free_modes import connected_body
 from anisocontact.solver.terms.rigid import RigidBodies
-from anisocontact.solver.terms.unconstrained_modes import MeshPart, parts, unconstrained_modes
 
-#: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
-NEAR = 1e-6
 LIMITS = Limits()
 
 
@@ -112,27 +109,18 @@ class ContactProblem(AssembledSystem):
         self._bodies = _movable(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
-        bodies, layout = Bodies(form, unknowns), Layout(unknowns, 0)
+        bodies = Bodies(form, unknowns)
         self._unknowns, self._fields = unknowns, fields_beside(unknowns, space)
         suit(contacts, bodies, [form.finite] * len(contacts))
         warn_of(contacts)
         warn_of_overlaps(contacts)
-        self._assembly = Assembly(
-            layout,
-            bodies,
-            Contacts(contacts),
-            Dirichlet(self.bcs, space),
-            Constraints(layout.new_vector()),
-            RigidBodies([], space.mesh.comm),
-            fields=self._fields,
-        )
+        self._assembly = _assembly(bodies, contacts, Dirichlet(self.bcs, space), self._fields)
         self.contact_term = self._assembly.contacts
-        self.balance = ForceBalance.none(layout.owned)
+        self.balance = ForceBalance.none(self._assembly.layout.owned)
         self._fields.measure(bodies)
         self._tangent = Tangent(self._assembly)
-        self._parts = parts(unknowns.nodes)
-        bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
-        self._sides = SidesKept(contacts, bodies_of)
+        self._unsupported = UnsupportedParts(unknowns, contacts, self._assembly)
+        self._sides = SidesKept(contacts, self._unsupported.bodies())
         options = {**self._fields.options, **(petsc_options or {})}
         self._state = ScriptState(u, unknowns, contacts, self._bodies, self._assembly.terms)
         self._options = Database(petsc_options_prefix, petsc_options or {}, "petsc_options")
@@ -371,40 +359,28 @@ class ContactProblem(AssembledSystem):
 
     def _check_supported(self, x: Vec) -> None:
         """Refuse a part of the mesh that can move as a rigid body."""
-        if not self._untouched():
+        if not self._unsupported.untouched():
             return
         self.evaluate(x)  # rigid bodies may have been moved since
-        free = self._untouched()
+        free = self._unsupported.untouched()
         self._assembly.terms.roll_back()
-        if not free:
-            return
-        bodies, rows = self._assembly.bodies, self._assembly.conditions.unknowns
-        stiffness = bodies.bulk.stiffness
-        bodies.add_tangent(stiffness)
-        for part in free:
-            motions = unconstrained_modes(part, stiffness, bodies.scale, rows, self._unknowns)
-            if motions:
-                at = ", ".join(f"{v:.4g}" for v in part.middle)
-                raise InputError(
-                    f"nothing holds the body around ({at}): {motions}; no condition does, and no "
-                    "contact touches it: let it touch at the start, or move it there with "
-                    "conditions",
-                    "contacts" if self.contacts else "bcs",
-                )
+        self._unsupported.check(free, "contacts" if self.contacts else "bcs")
 
-    def _any(self, here: Flags) -> bool:
-        return bool(self.comm.allreduce(int(here.any())))
 
-    def _untouched(self) -> list[MeshPart]:
-        """Parts of the mesh that no contact which touches somewhere acts on, now."""
-        nodes = [np.zeros(0, dtype=np.int32)]
-        for contact in self.contacts:
-            now = contact.current.response
-            near = contact.master.located(now.state) & (now.gap <= NEAR * contact.facet_size)
-            if self._any(near):
-                nodes.append(contact.couplable())
-        touched = np.concatenate(nodes)
-        return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
+def _assembly(
+    bodies: Bodies, contacts: Sequence[Contact], conditions: Dirichlet, fields: Fields
+) -> Assembly:
+    """The system of a script, which has no constraints, and rigid bodies that it moves alone."""
+    layout = Layout(bodies.unknowns, 0)
+    return Assembly(
+        layout,
+        bodies,
+        Contacts(contacts),
+        conditions,
+        constraints=Constraints(layout.new_vector()),
+        rigid=RigidBodies([], bodies.unknowns.comm),
+        fields=fields,
+    )
 
 
 def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
