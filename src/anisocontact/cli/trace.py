@@ -34,25 +34,24 @@ def _drive_into(folder: Path, trace: Trace) -> int:
     """Drive a point into a folder that is ours alone."""
     began = time.perf_counter()
     history, message = _driven(trace.interface, trace.load, trace.group)
-    compared = {}
+    runs = [(f"as given: {trace.case.contact.friction.sliding_rule}", history)]
     for label, interface in trace.compared:
-        compared[label], stopped = _driven(interface, trace.load, trace.group)
+        run, stopped = _driven(interface, trace.load, trace.group)
+        runs.append((label, run))
         message = message or (f"{label}: {stopped}" if stopped else "")
     if trace.case.output.pictures:
         leave_out_descriptions()
     summary = write_trace(
         folder,
-        history,
+        runs,
         trace.interface,
         title=trace.case.title,
         message=message,
         wall_time=time.perf_counter() - began,
-        compared=compared,
-        label=f"as given: {trace.case.contact.friction.sliding_rule}",
         pictures=trace.case.output.pictures,
         case=trace.text,
     )
-    for run in (history, *compared.values()):
+    for _, run in runs:
         if run.warning:
             say(f"warning: {run.warning}", sys.stderr)
     if message:

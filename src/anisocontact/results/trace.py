@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -36,14 +37,12 @@ _CAPTIONS = {
 
 def write_trace(
     folder: str | Path,
-    history: History,
+    runs: Sequence[tuple[str, History]],
     interface: PointInterface,
     *,
     title: str = "",
     message: str = "",
     wall_time: float = 0.0,
-    compared: dict[str, History] | None = None,
-    label: str = "as given",
     pictures: bool = True,
     case: str = "",
 ) -> dict[str, Any]:
@@ -51,13 +50,11 @@ def write_trace(
 
     Args:
         folder: Where; what an earlier run left there is removed.
-        history: What was driven.
-        interface: Through what.
+        runs: What was driven, with labels; the first is shown, others compared with it.
+        interface: Through what the first went.
         title: Heading.
         message: Why the drive stopped before its end; empty if it did not.
         wall_time: How long it took, seconds.
-        compared: Histories of further runs by label.
-        label: Label of this one among them.
         pictures: Whether pictures and `report.html` are wanted.
         case: Text of the case file, kept beside the results.
 
@@ -67,7 +64,8 @@ def write_trace(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     clear(folder)
-    compared = compared or {}
+    (label, history), *others = runs
+    compared = dict(others)
     summary: dict[str, Any] = {
         "status": "stopped" if message else "done",
         "message": message,
