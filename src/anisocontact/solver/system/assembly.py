@@ -53,6 +53,21 @@ class TrialState:
     rigid: Floats
 
 
+@dataclass(frozen=True)
+class ExternalTerms:
+    """What acts on the bodies beside their contacts.
+
+    Attributes:
+        holders: What holds them, with forces on local nodes as contacts have them.
+        loads: Loads, likewise.
+        aids: What is there for the solution alone; forces as bodies have them.
+    """
+
+    holders: Sequence[Term] = ()
+    loads: Sequence[Term] = ()
+    aids: Sequence[Term] = ()
+
+
 class Assembly:
     """One system of terms.
 
@@ -63,9 +78,7 @@ class Assembly:
         conditions: Unknowns with prescribed values.
         constraints: Unknowns that follow from others.
         rigid: Rigid bodies, with unknowns of their own.
-        holders: What else holds the bodies, with forces on local nodes as contacts have them.
-        loads: Loads, likewise.
-        aids: What is there for the solution alone; forces as bodies have them.
+        external: What else acts on the bodies.
         fields: Fields beside the displacement; none if left out.
 
     Attributes:
@@ -83,14 +96,13 @@ class Assembly:
         conditions: PrescribedUnknowns,
         constraints: Constraints,
         rigid: RigidBodies,
-        holders: Sequence[Term] = (),
-        loads: Sequence[Term] = (),
-        aids: Sequence[Term] = (),
+        external: ExternalTerms = ExternalTerms(),
         fields: Fields | None = None,
     ) -> None:
         self.fields = Fields() if fields is None else fields
         self.layout, self.bodies, self.contacts = layout, bodies, contacts
         self.conditions, self.constraints, self.rigid = conditions, constraints, rigid
+        holders, loads, aids = external.holders, external.loads, external.aids
         self.reactions = TermGroup([contacts, *holders])
         self.loads, self.aids = TermGroup(loads), TermGroup(aids)
         self.acting = TermGroup([rigid, contacts, *loads, *holders, *aids])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from anisocontact.contact import Contact
 from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.shared_nodes import mark_shared
 from anisocontact.mesh import Model
-from anisocontact.solver.system.assembly import Assembly
+from anisocontact.solver.system.assembly import Assembly, ExternalTerms
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.rounding import check_rounding
 from anisocontact.solver.system.sides_kept import SidesKept
@@ -36,6 +35,25 @@ from anisocontact.solver.terms.stabilisation import Stabilisation
 from anisocontact.solver.terms.supports import Supports
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
 from anisocontact.solver.terms.tied_faces import Tie, TiedFaces
+
+
+@dataclass(frozen=True)
+class Connections:
+    """What holds and connects the bodies for the whole run, see `Problem`.
+
+    Attributes:
+        attached: Elastic supports and springs.
+        symmetry: Facet groups on symmetry planes.
+        coupled: Facet groups that follow rigid bodies.
+        ties: Facet groups that are glued together.
+        cyclic: Cut faces of sectors.
+    """
+
+    attached: Sequence[ElasticSupport | Spring] = ()
+    symmetry: Sequence[str] = ()
+    coupled: Sequence[CoupledFace] = ()
+    ties: Sequence[Tie] = ()
+    cyclic: Sequence[CyclicSymmetry] = ()
 
 
 @dataclass(frozen=True)
@@ -77,12 +95,8 @@ def make_parts(
     model: Model,
     materials: Mapping[str, Material],
     contacts: Sequence[Contact],
-    specs: Sequence[ElasticSupport | Spring],
-    symmetry: Sequence[str],
+    connections: Connections,
     stabilised: bool,
-    coupled: Sequence[CoupledFace] = (),
-    ties: Sequence[Tie] = (),
-    sectors: Sequence[CyclicSymmetry] = (),
 ) -> Parts:
     """Parts of a problem, from the arguments of `Problem`.
 
@@ -90,25 +104,22 @@ def make_parts(
         InputError: A body without material, a material without body, or two contacts of one name.
     """
     _check(model, materials, contacts)
-    for name, material in materials.items():
-        model.idealisation.check_material(bare(material), f"material.{name}")
-    faces = CoupledFaces(coupled, model, materials, middle_nodes(model))
+    specs = connections.attached
+    faces = CoupledFaces(connections.coupled, model, materials, middle_nodes(model))
     bulk = _bulk(model, materials, faces)
     bodies, rigid = Bodies(bulk, model.unknowns), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.unknowns, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
-    tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
-    if tied is not None:
-        go_on_beyond_cuts(contacts, tied.sectors)
-    guides = _guides(model, symmetry, like, tied, faces)
+    tied = _tied(model, like, contacts, connections)
+    guides = _guides(model, connections.symmetry, like, tied, faces)
     constraints = Constraints(like, constrain_middles(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
     aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, links)
-    terms: dict[str, Any] = {"holders": [attached], "loads": [loads], "aids": [aid]}
-    assembly = Assembly(layout, bodies, Contacts(contacts), supports, constraints, rigid, **terms)
+    external = ExternalTerms(holders=[attached], loads=[loads], aids=[aid])
+    assembly = Assembly(layout, bodies, Contacts(contacts), supports, constraints, rigid, external)
     return Parts(
         model=model,
         materials=dict(materials),
@@ -124,6 +135,17 @@ def make_parts(
         sides=SidesKept(contacts, all_bodies(model)),
         assembly=assembly,
     )
+
+
+def _tied(
+    model: Model, like: Vec, contacts: Sequence[Contact], connections: Connections
+) -> TiedFaces | None:
+    """Ties and cut faces, beyond which contacts go on; None where there are neither."""
+    if not (connections.ties or connections.cyclic):
+        return None
+    tied = TiedFaces(connections.ties, model, like, connections.cyclic)
+    go_on_beyond_cuts(contacts, tied.sectors)
+    return tied
 
 
 def _bulk(
@@ -187,3 +209,5 @@ def _check(
         if names.count(name) > 1:
             raise InputError(f"two contacts have the name {name!r}", "contact")
     check_given_once(contacts, "contact")
+    for name, material in materials.items():
+        model.idealisation.check_material(bare(material), f"material.{name}")

@@ -23,7 +23,7 @@ from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
-from anisocontact.solver.system.parts import make_parts
+from anisocontact.solver.system.parts import Connections, make_parts
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.reported import ReportedSystem
 from anisocontact.solver.system.restart_state import BEGUN, RestartState
@@ -96,9 +96,8 @@ class Problem(ReportedSystem):
         ties: Sequence[Tie] = (),
         cyclic: Sequence[CyclicSymmetry] = (),
     ) -> None:
-        self._parts = parts = make_parts(
-            model, materials, contacts, attached, symmetry, stabilised, coupled, ties, cyclic
-        )
+        connections = Connections(attached, symmetry, coupled, ties, cyclic)
+        self._parts = parts = make_parts(model, materials, contacts, connections, stabilised)
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
