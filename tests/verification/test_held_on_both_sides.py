@@ -15,7 +15,7 @@ from anisocontact.laws import Friction
 from anisocontact.mesh import Body, Placement, PlaneStrain, Rotation, build_mesh, make_shape
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Cylindrical, Problem, Solver, Step
-from anisocontact.solver.stepping.alarms import Alarms
+from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
 from anisocontact.solver.stepping.report import Accepted
 from anisocontact.surfaces import make_surface
 
@@ -58,8 +58,8 @@ def test_strategies_agree_on_the_reactions_of_both_clamps() -> None:
 def test_it_is_told_how_many_points_have_no_pressure() -> None:
     """One line for the contact, in the first increment and never again."""
     states, contact = _run("direct")
-    alarms = Alarms()
-    told = [text for accepted in states for text in alarms.of(accepted)]
+    warnings = IncrementWarnings()
+    told = [text for accepted in states for text in warnings.of(accepted)]
     (line,) = [text for text in told if "both sides" in text]
     assert line.startswith(f"step 'press', increment 1: contact {contact.name!r}: 1 slave point")
 

@@ -42,7 +42,8 @@ class Contact(ContactPair, OneHistory):
     now, its change. The history advances with `commit` only.
 
     With `self_contact` a group folds onto itself: it is evaluated at the slave nodes, and of facets
-    that face each other one is the slave, see `Fold`. Resultants are what the slaves get.
+    that face each other one is the slave, see `SelfContactSides`. Resultants are what the slaves
+    get.
 
     Args:
         model: Mesh with the facet groups.

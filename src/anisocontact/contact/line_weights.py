@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
-from anisocontact.contact.facing import Facing, Pairs
+from anisocontact.contact.facet_pairs import FacetPairs, FacingSides
 from anisocontact.contact.line_overlap import Number, Overlap
 from anisocontact.contact.slave_edges import line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches, transformed
@@ -288,11 +288,11 @@ class LineNodes:
 
 
 def line_weights(
-    sides: Facing,
+    sides: FacingSides,
     around: Patches,
     now: Floats,
     more: Locals,
-    pairs: Pairs,
+    pairs: FacetPairs,
     *,
     current_area: bool,
     hand_over: bool,

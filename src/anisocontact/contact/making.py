@@ -271,8 +271,8 @@ def _on_facets(
     if nodes is not None:
         from anisocontact.contact.mortar_master import MortarMaster
 
-        size = facet_size(model, master)
-        pair = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
+        size, itself = facet_size(model, master), options.self_contact
+        pair = MortarMaster(sides, nodes, law, group=master, size=size, self_contact=itself)
         return PairParts(nodes, pair, law)
     from anisocontact.contact.facet_master import FacetMaster
 

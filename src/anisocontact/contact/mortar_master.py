@@ -19,8 +19,7 @@ from anisocontact.contact.contact_planes import (
     held_directions,
 )
 from anisocontact.contact.facet_answer import found_on_all
-from anisocontact.contact.facing import facing, largest_radius
-from anisocontact.contact.fold import Fold
+from anisocontact.contact.facet_pairs import facing_pairs, largest_radius
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
 from anisocontact.contact.meshed_master import MeshedMaster
@@ -32,6 +31,7 @@ from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.prescribed_nodes import PrescribedNodes
 from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.self_contact import SelfContactSides
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -62,7 +62,7 @@ class MortarMaster(MeshedMaster):
         law: Laws of the interface.
         group: Facet group of the master.
         size: Length of its facets.
-        folded: Whether the master is the slave.
+        self_contact: Whether the master is the slave.
     """
 
     def __init__(
@@ -73,10 +73,10 @@ class MortarMaster(MeshedMaster):
         *,
         group: str,
         size: float,
-        folded: bool = False,
+        self_contact: bool = False,
     ) -> None:
         self._points = points
-        self._fold = Fold(points, sides.gathered) if folded else None
+        self._self_contact = SelfContactSides(points, sides.gathered) if self_contact else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
@@ -100,9 +100,9 @@ class MortarMaster(MeshedMaster):
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
             radius = max(self._comm.allgather(largest_radius(sides.slave, now)))
-            pairs = facing(sides, sides.searched, now, radius, points.across)
-            if self._fold is not None:
-                pairs = self._fold.oriented(pairs, self.numbers)
+            pairs = facing_pairs(sides, sides.searched, now, radius, points.across)
+            if self._self_contact is not None:
+                pairs = self._self_contact.oriented(pairs, self.numbers)
             area = points.current_area
             weights = mortar_weights(
                 sides, points.around, now, more, pairs, current_area=area, hand_over=True
@@ -140,8 +140,8 @@ class MortarMaster(MeshedMaster):
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
         self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
-        if self._fold is not None:
-            self._fold.commit()
+        if self._self_contact is not None:
+            self._self_contact.commit()
         self._count_as_then(state)
         self._at = self._placed(self._at.weights)
         return state
@@ -289,7 +289,7 @@ class MortarMaster(MeshedMaster):
         self, u: Floats, before: Snapshot, state: State, now: Snapshot
     ) -> SideOfMaster:
         found, hit = super().side_of_master(u, before, state, now), self._hint
-        if self._fold is not None:
+        if self._self_contact is not None:
             return found
         # facets that face the same way do not overlap: a body that has turned over is not touched
         there = (hit.status == FACET_STATUS.index("on")) & (hit.gap <= 0.0) & ~found.located
@@ -342,8 +342,8 @@ class MortarMaster(MeshedMaster):
             return np.zeros((0, 3))
         self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
         self._replaced = None
-        if self._fold is not None:
-            self._fold.commit()
+        if self._self_contact is not None:
+            self._self_contact.commit()
         self._count_as_then(now.response.state)
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed(self._at.weights)
@@ -356,8 +356,8 @@ class MortarMaster(MeshedMaster):
     def roll_back(self, tried: bool) -> None:
         if tried:
             self._return()
-            if self._fold is not None:
-                self._fold.roll_back()
+            if self._self_contact is not None:
+                self._self_contact.roll_back()
             self._at = self._placed()
 
     @override
@@ -370,8 +370,8 @@ class MortarMaster(MeshedMaster):
         widths = self._comm.allgather((then.masters.shape[1], then.around.shape[1]))
         then = then.as_wide(*(int(most) for most in np.max(widths, axis=0)))
         kept |= {f"opposite.{name}": getattr(then, name).copy() for name in OPPOSITE}
-        if self._fold is not None:
-            kept["sides"] = self._fold.persistent()
+        if self._self_contact is not None:
+            kept["sides"] = self._self_contact.persistent()
         return kept | {"reference": self._points.quadrature.reference.copy()}
 
     @override
@@ -382,8 +382,8 @@ class MortarMaster(MeshedMaster):
         self._hint = FacetProjections(*(kept[f"projection.{f.name}"] for f in fields(self._hint)))
         then = replace(self._then, **{name: kept[f"opposite.{name}"] for name in OPPOSITE})
         self._then = self._number_anew(u, [then], [self._hint.facet])[0]
-        if self._fold is not None:
-            self._fold.restore(kept["sides"])
+        if self._self_contact is not None:
+            self._self_contact.restore(kept["sides"])
         self._count_as_then(kept["state"])
         moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
         self._go_to(self.sides.reference + moved)

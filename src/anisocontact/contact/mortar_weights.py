@@ -13,7 +13,7 @@ from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
-from anisocontact.contact.facing import Facing, Pairs
+from anisocontact.contact.facet_pairs import FacetPairs, FacingSides
 from anisocontact.contact.line_weights import line_weights
 from anisocontact.contact.slave_nodes import Patches
 
@@ -82,11 +82,11 @@ class MortarWeights:
 
 
 def mortar_weights(
-    sides: Facing,
+    sides: FacingSides,
     around: Patches,
     now: Floats,
     more: Locals,
-    pairs: Pairs,
+    pairs: FacetPairs,
     *,
     current_area: bool,
     hand_over: bool,
@@ -113,11 +113,11 @@ def mortar_weights(
 
 
 def _in_space(
-    sides: Facing,
+    sides: FacingSides,
     around: Patches,
     now: Floats,
     more: Locals,
-    pairs: Pairs,
+    pairs: FacetPairs,
     whole: Sequence[float],
     current_area: bool,
 ) -> MortarWeights:
@@ -157,7 +157,7 @@ def _in_space(
     return MortarWeights(core.masters, core.area, core.weight, core)
 
 
-def _by_slave(pairs: Pairs, slaves: int, masters: int) -> tuple[Ints, Locals]:
+def _by_slave(pairs: FacetPairs, slaves: int, masters: int) -> tuple[Ints, Locals]:
     """Where the facets opposite to each of the slave begin, and these, ascending."""
     order = np.argsort(pairs.slave * masters + pairs.master, kind="stable")
     offsets = np.searchsorted(pairs.slave[order], np.arange(slaves + 1))

@@ -22,7 +22,7 @@ from anisocontact.contact.facet_mesh import (
     group_area,
     isoparametric,
 )
-from anisocontact.contact.facing import largest_radius, near_facets
+from anisocontact.contact.facet_pairs import largest_radius, near_facets
 from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface

@@ -44,7 +44,7 @@ def supported_share(
     return np.asarray(traction - along + np.where(kept[:, None], before, less))
 
 
-class Supports:
+class SupportedPoints:
     """What supports take of the tractions of an increment.
 
     Args:

@@ -24,7 +24,7 @@ import scipy
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
-from anisocontact.contact.facing import facing, largest_radius
+from anisocontact.contact.facet_pairs import facing_pairs, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
@@ -133,7 +133,7 @@ def _conditions(
     around = patches(sides.slave)
     none = np.zeros((len(around.nodes), 0), dtype=np.int32)
     radius = largest_radius(sides.slave, sides.reference)
-    pairs = facing(sides, sides.slave, sides.reference, radius)
+    pairs = facing_pairs(sides, sides.slave, sides.reference, radius)
     weights = mortar_weights(
         sides, around, sides.reference, none, pairs, current_area=True, hand_over=False
     )

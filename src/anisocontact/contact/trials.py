@@ -22,7 +22,7 @@ from anisocontact.contact.multipliers import (
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
-from anisocontact.contact.supported_share import Supports
+from anisocontact.contact.supported_share import SupportedPoints
 from anisocontact.interface import State
 
 #: What a trial starts from, and what the next Newton step is linear about.
@@ -62,7 +62,7 @@ class Trials:
         self.multipliers = MultiplierSchemes(law, comm)
         self._layer: Layer | None = None
         self.immovable = self._slight = np.zeros(len(state), dtype=bool)
-        self._supports = Supports(len(state))
+        self._supports = SupportedPoints(len(state))
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
         self._state: State
@@ -96,7 +96,7 @@ class Trials:
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
-        self._supports = Supports(len(state))
+        self._supports = SupportedPoints(len(state))
         self._slight = self._points.covered(accepted.areas) < SLIGHT
         if self._own is not None:
             start = self._own.begin(state, self.master.located(state))

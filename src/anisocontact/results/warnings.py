@@ -18,8 +18,8 @@ from anisocontact.contact.hints import (
 )
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
-from anisocontact.solver.stepping.alarms import UNBALANCED
 from anisocontact.solver.stepping.cut_faces import PAST
+from anisocontact.solver.stepping.increment_warnings import UNBALANCED
 from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, WARNED

@@ -32,7 +32,7 @@ from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
-from anisocontact.solver.stepping.alarms import missed_event
+from anisocontact.solver.stepping.increment_warnings import missed_event
 from anisocontact.solver.terms.persistent import Persistent
 
 

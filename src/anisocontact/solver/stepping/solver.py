@@ -14,12 +14,12 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of
-from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
+from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
 from anisocontact.solver.stepping.overload import (
     Overload,
     exhausted,
@@ -197,12 +197,13 @@ class Solver:
         comm, strategy = self.problem.comm, self.choice.strategy
         with self._options:
             self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
-        attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
+        attempts = Attempts(self.problem, newton, self._watch, self._turns)
+        warnings = IncrementWarnings()
         try:
             while self.place.step < len(self.steps):
                 step = self.steps[self.place.step]
                 for accepted in self._step(attempts, step):
-                    for text in (*self._options.unread(comm), *alarms.of(accepted)):
+                    for text in (*self._options.unread(comm), *warnings.of(accepted)):
                         warn(text)
                     yield accepted
                 self._go_on(step)

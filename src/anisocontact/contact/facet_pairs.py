@@ -25,7 +25,7 @@ OPPOSED = 0.1
 CLOSED = 0.9
 
 
-class Facing(Protocol):
+class FacingSides(Protocol):
     """Facets of two sides, see `Sides`."""
 
     @property
@@ -58,7 +58,7 @@ class Facing(Protocol):
 
 
 @dataclass(frozen=True)
-class Pairs:
+class FacetPairs:
     """Pairs of facets that face each other.
 
     Attributes:
@@ -71,9 +71,9 @@ class Pairs:
     master: Ints
     apart: Floats
 
-    def take(self, which: Flags) -> Pairs:
+    def take(self, which: Flags) -> FacetPairs:
         """Some of them."""
-        return Pairs(self.slave[which], self.master[which], self.apart[which])
+        return FacetPairs(self.slave[which], self.master[which], self.apart[which])
 
 
 def largest_radius(slave: FacetMesh, now: Floats) -> float:
@@ -82,9 +82,9 @@ def largest_radius(slave: FacetMesh, now: Floats) -> float:
     return float(_ball(nodes, now)[1].max(initial=0.0))
 
 
-def facing(
-    sides: Facing, slave: FacetMesh, now: Floats, radius: float, across: Flags | None = None
-) -> Pairs:
+def facing_pairs(
+    sides: FacingSides, slave: FacetMesh, now: Floats, radius: float, across: Flags | None = None
+) -> FacetPairs:
     """Pairs of facets within reach that oppose each other and may overlap along the normal.
 
     Args:
@@ -113,7 +113,7 @@ def facing(
         unmet.facets,
         sides.threads,
     )
-    pairs = Pairs(*found)
+    pairs = FacetPairs(*found)
     if across is None or not across.any():
         return pairs
     opposed = -np.einsum("pi,pi->p", own[pairs.slave], other[pairs.master])

@@ -29,7 +29,7 @@ HELD = (
 UNBALANCED = 1e-4
 
 
-class Alarms:
+class IncrementWarnings:
     """Warnings that accepted increments give reason to."""
 
     def __init__(self) -> None:

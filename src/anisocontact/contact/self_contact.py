@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Codes, Ints
-from anisocontact.contact.facing import Pairs
+from anisocontact.contact.facet_pairs import FacetPairs
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.slave_nodes import SlaveNodes
 
@@ -24,7 +24,7 @@ from anisocontact.contact.slave_nodes import SlaveNodes
 SLAVE, MASTER = 1, -1
 
 
-class Fold:
+class SelfContactSides:
     """Sides of the facets of a group that meets itself, the same on all processes."""
 
     def __init__(self, points: SlaveNodes, surface: MasterSurface) -> None:
@@ -35,13 +35,13 @@ class Fold:
         self._accepted = self._side
         self._faced: Ints = np.zeros(0, dtype=np.int64)
 
-    def oriented(self, pairs: Pairs, masters: Ints) -> Pairs:
+    def oriented(self, pairs: FacetPairs, masters: Ints) -> FacetPairs:
         """Those pairs of which the first facet is the slave; collective.
 
         Facets that face others for the first time take sides until `commit` or `roll_back`.
 
         Args:
-            pairs: Pairs that face each other.
+            pairs: FacetPairs that face each other.
             masters: Numbers in the whole group of the facets of the master here.
         """
         first, second = self._numbers[pairs.slave], masters[pairs.master]
