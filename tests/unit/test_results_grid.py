@@ -10,7 +10,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results.paraview import BodyGrid
-from anisocontact.results.quantities import von_mises
+from anisocontact.results.stress_invariants import von_mises
 
 # Sums of a few dozen numbers of the size of the result: round-off, no more.
 ROUND_OFF = 1e-12

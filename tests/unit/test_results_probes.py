@@ -12,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.cli import main
 from anisocontact.results import Results
 from anisocontact.results.history import read_history
-from anisocontact.results.quantities import principal, von_mises
+from anisocontact.results.stress_invariants import principal, von_mises
 
 CASE = """
 [mesh.box.bar]

@@ -16,7 +16,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.mesh.idealisation import make_idealisation
 from anisocontact.results.paraview import slave_points
-from anisocontact.results.round_area import FEWEST, Images, round_radius
+from anisocontact.results.round_area import FEWEST, SymmetryImages, round_radius
 from anisocontact.surfaces import make_surface
 
 WHOLE = SimpleNamespace(
@@ -85,7 +85,7 @@ def test_a_disc_of_revolution_is_known_from_eight_facets_on(rings):
         counted=lambda: np.ones(rings, dtype=bool),
     )
     model = SimpleNamespace(idealisation=make_idealisation("axisymmetric"))
-    found = round_radius(contact, Images(SimpleNamespace(model=model), contact))
+    found = round_radius(contact, SymmetryImages(SimpleNamespace(model=model), contact))
     assert np.isnan(found) if rings < 8 else found == pytest.approx(outer[-1], rel=1e-12)
 
 

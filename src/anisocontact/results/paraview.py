@@ -17,15 +17,9 @@ from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
 from anisocontact.bulk.cell_energy import volumes
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons, vertices
-from anisocontact.results.quantities import (
-    CELL,
-    NODE,
-    POINT,
-    SlavePoints,
-    arrays,
-    principal,
-    von_mises,
-)
+from anisocontact.results.quantities import CELL, NODE, POINT, arrays
+from anisocontact.results.slave_points import SlavePoints
+from anisocontact.results.stress_invariants import principal, von_mises
 from anisocontact.solver import Problem
 
 #: Rows and columns of the stress components, in the order VTK has them.

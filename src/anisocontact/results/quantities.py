@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.array_types import Floats, Locals
+from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import real
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import called
 from anisocontact.base.typed import typed
+from anisocontact.results.stress_invariants import principal, von_mises
 
 #: What a quantity belongs to.
 NODE, CELL, POINT, PATCH = "node", "cell", "slave point", "patch"
@@ -161,66 +162,6 @@ def numbers(at: str, of: Any) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True)
-class SlavePoints:
-    """The slave points of a contact on this rank, in the accepted state.
-
-    Args:
-        number: Which contact.
-        contact: The contact.
-
-    Example:
-        Where points have slid most, as an array of one's own in `slave_points`:
-
-        >>> from anisocontact import Adhesion, Contact, ContactLaw, Friction, NormalLaw
-        >>> from anisocontact.mesh import BoxSpec, build_box
-        >>> from anisocontact.surfaces import make_surface
-        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
-        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        >>> adhesion, friction = Adhesion(stiffness=(1, 1)), Friction(coefficients=(0.3, 0.3))
-        >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
-        >>> points = SlavePoints(0, Contact(model, "block.bottom", plane, law))
-        >>> points.state["slip_accumulated"].tolist(), points.numbers.tolist()
-        ([0.0, 0.0, 0.0, 0.0], [0, 0, 0, 0])
-    """
-
-    number: int
-    contact: Any
-
-    @property
-    def last(self) -> Any:
-        """Response of the laws: `gap`, `pressure`, `traction`, `status`, ..., (n, ...)."""
-        return self.contact.last
-
-    @property
-    def state(self) -> Any:
-        """History: records with `slip_accumulated`, `dissipation`, ..., (n,)."""
-        return self.contact.state
-
-    @property
-    def numbers(self) -> Locals:
-        """Number of the contact for each point, (n,)."""
-        return np.full(len(self.contact.areas), self.number, dtype=np.int32)
-
-
-def von_mises(stress: Floats) -> Floats:
-    """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
-    xx, yy, zz, xy, yz, xz = stress.T
-    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
-
-
-def principal(stress: Floats) -> Floats:
-    """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3).
-
-    A node on a cell whose stress is no number there, being inside out at that node, has none.
-    """
-    known = np.isfinite(stress).all(axis=1)
-    found = np.full((len(stress), 3), np.nan)
-    found[known] = np.linalg.eigvalsh(stress[known][:, _TENSOR])[:, ::-1]
-    return found
-
-
 type _Row = tuple[str, str, str, Callable[[Any], Any]]
 
 
@@ -242,8 +183,6 @@ def _axis(law: str, number: int) -> _Row:
     )
 
 
-#: Places of the components XX YY ZZ XY YZ XZ in a matrix.
-_TENSOR = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
 #: What the report is made of.
 _PICTURED = {
     *("displacement", "body", "contact", "area", "covered", "pressure", "status"),

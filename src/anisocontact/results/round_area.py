@@ -24,7 +24,7 @@ RINGS = 4.0
 FLAT = 1e-4
 
 
-class Images:
+class SymmetryImages:
     """What a model stands for by symmetry: maps `x -> M x + c` of its parts.
 
     A plane of symmetry bounds the slave, and its nodes there are held along the normal.
@@ -89,7 +89,7 @@ def _mirrors(planes: list[tuple[Floats, float]]) -> list[tuple[Floats, Floats]]:
     return found
 
 
-def round_radius(contact: Contact, images: Images) -> float:
+def round_radius(contact: Contact, images: SymmetryImages) -> float:
     """The radius of the area that touches; no number where it is not round.
 
     Args:

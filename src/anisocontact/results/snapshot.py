@@ -12,9 +12,10 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
-from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
+from anisocontact.results.quantities import CONTACT, RIGID, numbers
 from anisocontact.results.resultants import Resultant, resultant
-from anisocontact.results.round_area import Images, round_radius
+from anisocontact.results.round_area import SymmetryImages, round_radius
+from anisocontact.results.slave_points import SlavePoints
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.terms.loads import mean_shares
@@ -170,7 +171,7 @@ class _ContactNow(SlavePoints):
 
     def radius(self) -> float:
         """Radius of the area that touches, no number where it is not round."""
-        return round_radius(self.contact, Images(self.problem, self.contact))
+        return round_radius(self.contact, SymmetryImages(self.problem, self.contact))
 
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
