@@ -17,30 +17,28 @@ from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
-from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.contact.multiplier_schemes import IN_CYCLES, SOFTER
-from anisocontact.mesh.node_unknowns import NodeUnknowns
-from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
+from anisocontact.solver.stepping.script_parts import (
+    moved_bodies,
+    script_assembly,
+    script_unknowns,
+)
 from anisocontact.solver.stepping.script_state import ScriptState
 from anisocontact.solver.stepping.unsupported_parts import UnsupportedParts
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.assembled import AssembledSystem
-from anisocontact.solver.system.assembly import Assembly, TrialState
-from anisocontact.solver.system.fields import Fields, fields_beside
+from anisocontact.solver.system.assembly import TrialState
+from anisocontact.solver.system.fields import fields_beside
 from anisocontact.solver.system.force_balance import ForceBalance
-from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.parts import suit
 from anisocontact.solver.system.sides_kept import SidesKept
 from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.terms.bodies import Bodies
-from anisocontact.solver.terms.constraints import Constraints
-from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
-from anisocontact.solver.terms.rigid import RigidBodies
 
 LIMITS = Limits()
 
@@ -105,8 +103,8 @@ class ContactProblem(AssembledSystem):
         petsc_options: Mapping[str, OptionValue] | None = None,
     ) -> None:
         space = u.function_space
-        unknowns = _unknowns(contacts, space)
-        self._bodies = _movable(contacts)
+        unknowns = script_unknowns(contacts, space)
+        self._bodies = moved_bodies(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
         bodies = Bodies(form, unknowns)
@@ -114,7 +112,7 @@ class ContactProblem(AssembledSystem):
         suit(contacts, bodies, [form.finite] * len(contacts))
         warn_of(contacts)
         warn_of_overlaps(contacts)
-        self._assembly = _assembly(bodies, contacts, Dirichlet(self.bcs, space), self._fields)
+        self._assembly = script_assembly(bodies, contacts, Dirichlet(self.bcs, space), self._fields)
         self.contact_term = self._assembly.contacts
         self.balance = ForceBalance.none(self._assembly.layout.owned)
         self._fields.measure(bodies)
@@ -365,43 +363,3 @@ class ContactProblem(AssembledSystem):
         free = self._unsupported.untouched()
         self._assembly.terms.roll_back()
         self._unsupported.check(free, "contacts" if self.contacts else "bcs")
-
-
-def _assembly(
-    bodies: Bodies, contacts: Sequence[Contact], conditions: Dirichlet, fields: Fields
-) -> Assembly:
-    """The system of a script, which has no constraints, and rigid bodies that it moves alone."""
-    layout = Layout(bodies.unknowns, 0)
-    return Assembly(
-        layout,
-        bodies,
-        Contacts(contacts),
-        conditions,
-        constraints=Constraints(layout.new_vector()),
-        rigid=RigidBodies([], bodies.unknowns.comm),
-        fields=fields,
-    )
-
-
-def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
-    """Where the displacement is among the unknowns of a script."""
-    check_given_once(contacts, "contacts")
-    for contact in contacts:
-        if not (contact.unknowns.among(space) and contact.unknowns.same(contacts[0].unknowns)):
-            raise InputError(
-                f"contact {contact.name!r} is defined on another space than u", "contacts"
-            )
-    if contacts:
-        return contacts[0].unknowns
-    return own_unknowns(space)
-
-
-def _movable(contacts: Sequence[Contact]) -> list[Any]:
-    """Rigid bodies of contacts that a script can have."""
-    found: list[Any] = [contact.body for contact in contacts if contact.body is not None]
-    for body in found:
-        if body.free:
-            raise InputError(
-                f"rigid body {body.name!r} is free; a script can only move it", "contacts"
-            )
-    return found
