@@ -14,7 +14,7 @@ from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Accepted, Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
@@ -23,6 +23,25 @@ SIZE = 0.25
 SLIP, STICK = (0.3, 0.15), (50.0, 40.0)
 #: Sides that slide along planes, and the axis across them.
 SIDES = (("left", "x"), ("front", "y"))
+
+
+def _boxes(meshed: bool, unit: float) -> tuple[Model, dict[str, Any]]:
+    """A block, and if wanted a base whose mesh does not match, with its support."""
+    boxes = {"block": BoxSpec((0, 0, 0), (unit, unit, 0.5 * unit), (4, 4, 2))}
+    if not meshed:
+        return build_box(boxes), {}
+    size = (2 * unit, 2 * unit, 0.5 * unit)
+    boxes["base"] = BoxSpec((-0.5 * unit, -0.5 * unit, -0.5 * unit), size, (6, 6, 1))
+    return build_box(boxes), {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+
+
+def _contact(model: Model, meshed: bool, law: ContactLaw, augmentation: Augmentation) -> Contact:
+    """The block on the base, or on a plane, at integration points."""
+    how: dict[str, Any] = {"augmentation": augmentation, "mortar": False}
+    if meshed:
+        return Contact(model, "block.bottom", "base.top", law, current_area=False, **how)
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    return Contact(model, "block.bottom", plane, law, **how)
 
 
 def _run(
@@ -39,40 +58,18 @@ def _run(
 
     Returns the contact force after each increment, the contact and the increments.
     """
-    boxes = {"block": BoxSpec((0, 0, 0), (unit, unit, 0.5 * unit), (4, 4, 2))}
-    support = {}
-    if meshed:
-        boxes["base"] = BoxSpec(
-            (-0.5 * unit, -0.5 * unit, -0.5 * unit), (2 * unit, 2 * unit, 0.5 * unit), (6, 6, 1)
-        )
-        support = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
-    model = build_box(boxes)
     stiffness = 10.0 * penalty * YOUNG / (SIZE * unit)
     marks = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
-    laws = (
+    law = ContactLaw(
         NormalLaw(penalty=stiffness),
         Adhesion(stiffness=(adhesion or stiffness,) * 2),
         Friction(coefficients=coefficients, directions=marks),
     )
     augmentation = Augmentation(tangential=adhesion is None, multipliers=multipliers)
-    contact: Contact | Contact
-    if meshed:
-        contact = Contact(
-            model,
-            "block.bottom",
-            "base.top",
-            law=ContactLaw(*laws),
-            current_area=False,
-            augmentation=augmentation,
-            mortar=False,
-        )
-    else:
-        plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        contact = Contact(
-            model, "block.bottom", Interface(plane, *laws), augmentation=augmentation, mortar=False
-        )
+    model, support = _boxes(meshed, unit)
+    contact = _contact(model, meshed, law, augmentation)
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
-    problem = Problem(model, dict.fromkeys(boxes, elastic), [contact])
+    problem = Problem(model, dict.fromkeys(model.body_names(), elastic), [contact])
     press = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01 * unit}} | support
     steps = [
         Step("press", 2, press),

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from anisocontact.base.array_types import Locals
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.merge import lift
 
@@ -51,6 +52,16 @@ def _hexahedra(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
     return np.stack(corners, axis=1)
 
 
+def _faces(shape: tuple[int, ...], cells: Locals) -> dict[str, Locals]:
+    """Nodes of the facets on each face of a lattice of cells."""
+    place = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    sides = cells[:, CELL_FACETS["hexahedron"]].reshape(-1, 4)
+    return {
+        face: sides[np.all(place[sides, axis] == end * (shape[axis] - 1), axis=1)]
+        for face, (axis, end) in FACES.items()
+    }
+
+
 def graded_body(
     name: str,
     n: int,
@@ -87,12 +98,7 @@ def graded_body(
     lattice = np.stack(np.meshgrid(x, h, z, indexing="ij"), axis=-1)
     shape = lattice.shape[:3]
     cells = _hexahedra(shape)
-    place = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3)
-    sides = cells[:, CELL_FACETS["hexahedron"]].reshape(-1, 4)
-    faces = {
-        face: sides[np.all(place[sides, axis] == end * (shape[axis] - 1), axis=1)]
-        for face, (axis, end) in FACES.items()
-    }
+    faces = _faces(shape, cells)
     points = lattice.reshape(-1, 3)
     contact, far = ("z0", "z1") if upper else ("z1", "z0")
     groups = {"contact": faces[contact], "far": faces[far], "x": faces["left"], "y": faces["front"]}
