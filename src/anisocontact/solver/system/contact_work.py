@@ -27,7 +27,6 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI
 from anisocontact.base.statuses import OPEN
 from anisocontact.contact import Contact
-from anisocontact.contact.initial import OVERLAP
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import Parts
 
@@ -37,7 +36,8 @@ CHANGED = 0.05
 BACK = -0.5
 #: What the laws have to add to the mean of both ends, over the work so far: what would warn.
 COARSE = LARGE
-#: Share of the work so far by which a point may change the rule, and points at which it ends.
+#: Share of the work so far by which a point may change the rule, or pushing overlaps apart adds to
+#: it, and points at which the rule ends.
 FINE, MOST = 1e-3, 32
 #: Share of the pressure that points may lose which open: half of what friction does there is missed
 #: by the laws, which have no pressure at the end.
@@ -193,7 +193,7 @@ class ContactWork:
         may have leapt, where the difference would be no warning, and where it is more than forces
         between those of both ends can explain: laws that count wrongly are then told.
         """
-        if not (prescribed or self._led()) or self._leapt(prescribed):
+        if not (prescribed or self._led()) or self._leapt(prescribed, work):
             return 0.0
         before, end = self._passed[0], self._passing(nodal)
         mean, most = self._mean_of_rigid()
@@ -213,12 +213,13 @@ class ContactWork:
         moves = moving > 0 or not parts.rigid.rest
         return bool(held and moves and changing == 0 and parts.rigid.loads_rest)
 
-    def _leapt(self, prescribed: bool) -> bool:
-        """Whether loads landed bodies, pressure was lost, or some lay below a master without."""
+    def _leapt(self, prescribed: bool, work: float) -> bool:
+        """Whether loads landed bodies, pressure was lost, or overlaps were pushed apart."""
         local = np.array([_pressures(contact, prescribed) for contact in self._contacts])
-        before, lost, after, below = np.reshape(self._comm.allreduce(local), (-1, 4)).T
+        before, lost, after, apart = np.reshape(self._comm.allreduce(local), (-1, 4)).T
         landed = not prescribed and bool(np.any((before == 0.0) & (after > 0.0)))
-        return landed or bool(lost.sum() > LOST * before.sum() or below.any())
+        pushed = bool(apart.sum() > FINE * abs(work))
+        return landed or pushed or bool(lost.sum() > LOST * before.sum())
 
     def _passing(self, nodal: Floats) -> _Passed:
         taken_up = sum(contact.taken_up() for contact in self._contacts)
@@ -295,8 +296,8 @@ def _reversed(contact: Contact) -> Flags:
     return np.asarray(np.einsum("nd,nd->n", *sides) < BACK * sizes)
 
 
-def _pressures(contact: Contact, lifted: bool) -> tuple[float, float, float, int]:
-    """Pressures over areas before and after an increment, on this rank.
+def _pressures(contact: Contact, lifted: bool) -> tuple[float, float, float, float]:
+    """Forces of pressure before and after an increment, on this rank.
 
     Args:
         contact: The contact.
@@ -304,19 +305,20 @@ def _pressures(contact: Contact, lifted: bool) -> tuple[float, float, float, int
 
     Returns:
         Their sum before, that of points which have lost it otherwise, their sum after, force; and
-        how many points were below their master without any.
+        what they can work at most on points that were below their master without any, energy.
     """
     before, now = contact.state, contact.trial.state
     force, free = contact.areas * before["pressure"], before["pressure"] <= 0.0
-    below = contact.master.located(before) & (before["gap"] < -OVERLAP * contact.facet_size)
+    below = free & contact.master.located(before)
     lost = now["pressure"] <= 0.0
     if lifted:
         lost &= ~contact.master.located(now)
+    after = contact.areas * now["pressure"]
     return (
         float(force.sum()),
         float(force[lost].sum()),
-        float(now["pressure"].sum()),
-        int(np.count_nonzero(free & below)),
+        float(after.sum()),
+        float(after[below] @ np.maximum(-before["gap"][below], 0.0)),
     )
 
 
