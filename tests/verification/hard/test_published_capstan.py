@@ -138,3 +138,34 @@ def test_grooved_drum(angle: float, to_the_end: Callable[..., Any]) -> None:
     force = run.accepted[-1].resultants[run.problem.contacts[0].name][0][2]
     grown = (np.exp(drag * np.pi * share) - 1.0) * THICK / share
     np.testing.assert_allclose(force, across / drag * grown, rtol=3e-3)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+def test_drifting_belt(strategy: str, to_the_end: Callable[..., Any]) -> None:
+    """Grooves wind around the drum, and nothing guides the belt: it drifts along the drum.
+
+    Requirement: pulls within 1e-4 of Euler's with what the friction ellipse has for a force
+    around the drum, 1 / sqrt(F_tt); drift over the way of the drum within 1e-3 of F_tz / F_tt,
+    the slip normal to the ellipse there; friction dissipates what turns the drum, to 1e-5, and
+    stabilisation nothing. Source: with no force along the drum the traction is around it
+    everywhere, and the slip F T. Tolerance: measured 2e-5, 5e-4, the stretch of
+    the belt as it begins to slide, and 8e-7. Springs keep the belt
+    while its place is found; with work counted on the way over which they let it go, friction
+    dissipated twice as much, and springs 0.4 of the work.
+    """
+    angle, first, second = np.radians(30.0), 0.5, 0.2
+    grooves = '{ kind = "coordinate-lines", angle_deg = 30 }'
+    friction = f"[{first}, {second}], directions = {grooves}"
+    text = BELT.format(order=1, drum="drum", held="", friction=friction, increments=4)
+    text = text.replace("[mesh.annulus", "lateral = true\n[mesh.annulus", 1)
+    run = to_the_end(text + RIGID, solver=f'strategy = "{strategy}"')
+    c, s = np.cos(angle), np.sin(angle)
+    around, across = (c / first) ** 2 + (s / second) ** 2, s * c * (second**-2.0 - first**-2.0)
+    drift = run.problem.accepted().array_r[: run.problem.layout.owned].reshape(-1, 3)[:, 2]
+    np.testing.assert_allclose(drift / (RADIUS * np.radians(30.0)), across / around, rtol=1e-3)
+    share = RADIUS / (RADIUS + 0.5 * THICK)
+    np.testing.assert_allclose(pulls(run)[1:], np.exp(np.pi / np.sqrt(around) * share), rtol=1e-4)
+    before, last = run.accepted[-3], run.accepted[-1]
+    energies = {name: value - before.energies[name] for name, value in last.energies.items()}
+    np.testing.assert_allclose(energies["friction"], energies["external"], rtol=1e-5)
+    assert last.energies["stabilisation"] == 0.0

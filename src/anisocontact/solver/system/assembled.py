@@ -48,7 +48,7 @@ class AssembledSystem:
             if wrong is not None:
                 raise LostError(wrong)
             moved = aid.improve(self.nodal, self.balance.force_scale)
-            if moved:
+            if moved and aid.travels:
                 self._go_on(x)
             if moved and aid.flow.flows:
                 return True

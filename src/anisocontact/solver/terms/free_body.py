@@ -16,6 +16,8 @@ from anisocontact.solver.terms.free_modes import ConnectedBody
 TOUCHING = 0.01
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
+#: Share of what springs carry beyond which loads have to be what they stand against.
+DRIVEN = 1e-3
 #: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
 PRESSED = 0.01
 
@@ -38,6 +40,7 @@ class FreeBody:
         count: Their number over all ranks.
         stiffness: Of stabilisation at each of them, force/length.
         load: Norm of the sum of all loads on it, force.
+        pushed: Loads along the motions of `left`, (j,).
         trusted: Whether contact and springs alone are to hold it in this attempt.
     """
 
@@ -53,6 +56,7 @@ class FreeBody:
     count: int = field(init=False)
     stiffness: float = 0.0
     load: float = 0.0
+    pushed: Floats = field(default_factory=lambda: np.zeros(0))
     trusted: bool = False
 
     def __post_init__(self) -> None:
@@ -130,11 +134,22 @@ class FreeBody:
             force: Of the springs of stabilisation, (nodes, 3).
             stiffness: Of each of these springs, force/length.
         """
-        nodes, arms = self.body.nodes, self.body.arms
-        own = force[nodes]
-        work = np.concatenate([own.sum(axis=0), np.cross(arms, own).sum(axis=0)])
-        work = self.contacts[0].space.mesh.comm.allreduce(work)
-        return float(np.linalg.norm(self.left @ work) / (self.count * stiffness))
+        work = self.along_free(force[self.body.nodes])
+        return float(np.linalg.norm(work) / (self.count * stiffness))
+
+    def along_free(self, force: Floats) -> Floats:
+        """Generalised forces along its free motions of forces on its nodes, (nodes, 3); (j,)."""
+        work = np.concatenate([force.sum(axis=0), np.cross(self.body.arms, force).sum(axis=0)])
+        return np.asarray(self.left @ self.contacts[0].space.mesh.comm.allreduce(work))
+
+    def against_loads(self, force: Floats) -> bool:
+        """Whether springs that carry it stand against the loads on it, and not contact alone.
+
+        Args:
+            force: Of the springs of stabilisation, (nodes, 3).
+        """
+        carried = self.along_free(force[self.body.nodes])
+        return bool(-carried @ self.pushed > DRIVEN * (carried @ carried))
 
     def touched(self, at_start: bool = False) -> bool:
         """Whether one of its contacts is closed in the trial.

@@ -88,7 +88,7 @@ class Stabilisation(Term):
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
         self._falling: list[FreeBody] = []
-        self._fell = False
+        self._fell = self._driven = False
         self._where: Flags | None = None
         self._caught = False
         self._held: list[Supported] = []
@@ -110,6 +110,16 @@ class Stabilisation(Term):
     def watches(self) -> bool:
         """Whether there is a body that only contact can hold, with springs or without."""
         return bool(self._loose)
+
+    @property
+    def travels(self) -> bool:
+        """Whether work is counted on the way on which bodies flow, or springs let them go.
+
+        It is where loads carry them: what these work there is lost. Bodies that touch, and on which
+        springs stand against nothing but contact, slide with what moves them: where to, springs
+        only help to find.
+        """
+        return self.flow.flows or self._driven
 
     @property
     def loose(self) -> list[FreeBody]:
@@ -172,11 +182,12 @@ class Stabilisation(Term):
         self._spent, self._count = 0.0, 0
         self._carried = np.zeros_like(u)
         self._falling = [free for free in self._free if not free.touched()]
-        self._fell = any([not free.touched(at_start=True) for free in self._free])
+        self._driven = self._fell = any([not f.touched(at_start=True) for f in self._free])
         for free in self._loose:
             free.act_on(self._where)
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
             free.load = float(np.linalg.norm(total))
+            free.pushed = free.along_free(load[free.body.nodes])
         for free in self._free:
             needed = free.load / (free.count * free.reach(at_start=True))
             free.trusted = not self.careful and free.may_hold()
@@ -223,9 +234,11 @@ class Stabilisation(Term):
         if not self._free:
             return False
         force = self.force(u)
+        self._driven |= any([free.against_loads(force) for free in self._free])
         # what springs have carried is let go where the next equilibrium starts
         against = 0.5 * (self._carried + force + self._stopping(u))
-        self._spent -= self._comm.allreduce(float((against * (u - self._anchor)).sum()))
+        if self._driven:
+            self._spent -= self._comm.allreduce(float((against * (u - self._anchor)).sum()))
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
             return False
