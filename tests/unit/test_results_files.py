@@ -47,6 +47,17 @@ def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     assert not (tmp_path / "new").exists()
 
 
+def test_a_table_that_is_gone_is_not_begun_without_its_header(tmp_path):
+    """Requirement: removed while the run goes on, it is an error of the disk: its rows are lost."""
+    path = tmp_path / "history.csv"
+    history = HistoryTable(path)
+    history.append({"step": "press", "time": 1.0})
+    path.unlink()
+    with pytest.raises(FileNotFoundError):
+        history.append({"step": "press", "time": 2.0})
+    assert not path.exists()
+
+
 def test_clear_removes_what_a_run_wrote_and_nothing_else(tmp_path):
     for name in OWN:
         (tmp_path / name).mkdir() if "." not in name else (tmp_path / name).touch()

@@ -63,14 +63,19 @@ class HistoryTable:
             self._write(header, rows[: self._rows])
 
     def append(self, row: Mapping[str, Any]) -> None:
-        """Add a row of nested numbers."""
+        """Add a row of nested numbers.
+
+        Raises:
+            OSError: The file cannot be written, or is gone since the last row.
+        """
         values = dict(flat(row))
         known = set(self._columns)
         new = [column for column in values if column not in known]
         if new:
             self._widen(new)
         text = _line([_shown(values.get(column, math.nan)) for column in self._columns])
-        with self._path.open("ab") as file:
+        with self._path.open("r+b") as file:  # one that is gone is not begun without its header
+            file.seek(0, os.SEEK_END)
             self._size += file.write(text.encode())
         self._rows += 1
 
