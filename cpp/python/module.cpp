@@ -17,4 +17,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_mortar(m);
   anisocontact::bindings::bind_contact_planes(m);
   anisocontact::bindings::bind_blocks(m);
+  anisocontact::bindings::bind_block_rows(m);
 }

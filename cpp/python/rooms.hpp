@@ -14,5 +14,6 @@ void bind_facet_interface(nanobind::module_& m);
 void bind_mortar(nanobind::module_& m);
 void bind_contact_planes(nanobind::module_& m);
 void bind_blocks(nanobind::module_& m);
+void bind_block_rows(nanobind::module_& m);
 
 }  // namespace anisocontact::bindings

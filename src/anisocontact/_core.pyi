@@ -434,3 +434,9 @@ def plane_slopes(
 def block_entries(
     row: NDArray[numpy.int64], column: NDArray[numpy.int64], number: NDArray[numpy.int64], size: int
 ) -> Any: ...
+def multiply_block_rows(
+    starts: NDArray[numpy.int32],
+    columns: NDArray[numpy.int32],
+    blocks: NDArray[numpy.float32],
+    x: NDArray[numpy.float32],
+) -> NDArray[numpy.float32]: ...

@@ -14,6 +14,13 @@ class Correction(Protocol):
         """Correction of a level's unknowns; overwritten by the next call."""
 
 
+class Residual(Protocol):
+    """What is out of balance on a level."""
+
+    def __call__(self, b: Vec, x: Vec, out: Vec) -> None:
+        """Set `out` to `b - A x`."""
+
+
 class Smoother:
     """Chebyshev's iteration with the diagonal on the unknowns of an interior.
 
@@ -45,22 +52,33 @@ class Smoother:
         self._solver.solve(self._part, self._correction)
         x.array[self._here] += self._correction.array_r
 
+    @property
+    def of_products(self) -> bool:
+        """Whether it asks a matrix for products and the diagonal alone."""
+        return self._solver.getPC().getType() in (PETSc.PC.Type.JACOBI, PETSc.PC.Type.NONE)
+
     def destroy(self) -> None:
         """Give back PETSc's objects."""
         self._solver.destroy()
 
 
-def residual(matrix: Mat, b: Vec, x: Vec, out: Vec) -> None:
-    """Set `out` to `b - A x`."""
-    matrix.mult(x, out)
-    out.aypx(-1.0, b)
+def residual(matrix: Mat) -> Residual:
+    """What is out of balance with a matrix."""
+
+    def of_matrix(b: Vec, x: Vec, out: Vec) -> None:
+        matrix.mult(x, out)
+        out.aypx(-1.0, b)
+
+    return of_matrix
 
 
-def cycle(matrix: Mat, smoother: Smoother, below: Correction, b: Vec, rest: Vec, x: Vec) -> None:
+def cycle(
+    residual: Residual, smoother: Smoother, below: Correction, b: Vec, rest: Vec, x: Vec
+) -> None:
     """Smooth, correct from below, smooth again.
 
     Args:
-        matrix: Matrix of the level.
+        residual: Of the level.
         smoother: Smoother of its interior.
         below: What corrects the residual on the level below.
         b: Right-hand side.
@@ -68,7 +86,7 @@ def cycle(matrix: Mat, smoother: Smoother, below: Correction, b: Vec, rest: Vec,
         x: Solution so far, improved in place.
     """
     smoother.smooth(rest, x)
-    residual(matrix, b, x, rest)
+    residual(b, x, rest)
     x.axpy(1.0, below.solve(rest))
-    residual(matrix, b, x, rest)
+    residual(b, x, rest)
     smoother.smooth(rest, x)

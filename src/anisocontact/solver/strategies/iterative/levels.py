@@ -9,7 +9,7 @@ import numpy as np
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec, release_unreferenced
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
-from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle, residual
+from anisocontact.solver.strategies.iterative.cycle import Residual, Smoother, cycle, residual
 from anisocontact.solver.strategies.iterative.factor import Factor
 from anisocontact.solver.strategies.iterative.interpolation import (
     Aggregates,
@@ -19,9 +19,16 @@ from anisocontact.solver.strategies.iterative.interpolation import (
 )
 from anisocontact.solver.strategies.iterative.nested import Below
 from anisocontact.solver.strategies.iterative.patch import Patch
+from anisocontact.solver.strategies.iterative.single_rows import (
+    InteriorRows,
+    MixedResidual,
+    SingleInterior,
+)
 from anisocontact.solver.strategies.iterative.split import UnknownSplit, interior_matrix
 from anisocontact.solver.system.problem import Problem
 
+#: Unknowns of a node where all are displacements in space.
+BLOCK = 3
 #: Given unknowns follow from given ones at most so often, with ties on a symmetry plane.
 CHAIN = 3
 #: Residual of given unknowns over that of all up to which the other rows need not be told of it.
@@ -65,6 +72,8 @@ class Levels:
         self._bulk: object = None
         self._fresh = 0
         self._worn, self._single = False, True
+        self._mixed: MixedResidual | None = None
+        self._mixes = problem.linear and problem.layout.unknowns.block == BLOCK
 
     def count(self, iterations: int) -> None:
         """Take the number of Krylov iterations of a correction."""
@@ -110,6 +119,8 @@ class Levels:
         elif changed:
             self._renew(tangent)
         self._bulk = bulk
+        if self._mixed is not None:
+            self._mixed.take(tangent)
         assert self._coarse is not None
         found = self._coarse.renew(tangent)
         if self._single and not self._coarse.single:
@@ -122,20 +133,29 @@ class Levels:
         if self._factor is not None:
             self._factor.solve(b).copy(x)
             return
-        assert self._coarse is not None and self._smoother is not None
-        tangent, rest = self._tangent, self._rest
-        x.zeroEntries()
-        b.copy(rest)
-        self._solve_given(tangent, b, rest, x)
-        cycle(tangent, self._smoother, self._coarse, b, rest, x)
+        self._cycle(b, x)
+        if self._mixed is not None and not self._mixed.trusted(b, x):
+            self._mixes = False
+            self._note("products with the interior are in double precision from now on")
+            self._renew(self._tangent)
+            self._cycle(b, x)
 
     def close(self) -> None:
         """Give back PETSc's objects."""
-        for part in (self._smoother, self._interior, self._coarse, self._factor):
+        for part in (self._smoother, self._interior, self._mixed, self._coarse, self._factor):
             if part is not None:
                 part.destroy()
-        self._factor = None
+        self._factor = self._mixed = None
         self._split = self._smoother = self._interior = self._coarse = None
+
+    def _cycle(self, b: Vec, x: Vec) -> None:
+        """One cycle from zero."""
+        assert self._coarse is not None and self._smoother is not None
+        balance, rest = self._mixed or residual(self._tangent), self._rest
+        x.zeroEntries()
+        b.copy(rest)
+        self._solve_given(balance, b, rest, x)
+        cycle(balance, self._smoother, self._coarse, b, rest, x)
 
     def _factorise(self, tangent: Mat) -> bool:
         """Make a factor of the tangent; whether there is one."""
@@ -160,8 +180,6 @@ class Levels:
         found = aggregates(split, interior, f"{self._prefix}aggregates_")
         rough = problem.constraints.spread(tentative(found[0], split, tangent))
         prolong = smoothed(rough, tangent, interior, split)
-        if problem.linear:  # else every tangent would have to be converted
-            interior.convert(PETSc.Mat.Type.BAIJ)
         kept = split.patch.getSize()
         levels = _worth_it(found, kept)
         size = split.patch.getLocalSize()
@@ -174,6 +192,7 @@ class Levels:
             lambda matrix: below.inverse(matrix, levels, (prolong,)),
         )
         self._smoother = Smoother(interior, split.interior, split.first, self._prefix)
+        self._take_precision(tangent, interior)
         self._fresh, self._worn = 0, False
         release_unreferenced(problem.comm)
         counts = ", then ".join(str(level.count) for level in levels)
@@ -194,9 +213,32 @@ class Levels:
         self._smoother.renew(self._interior)
         if again is None and before is not None:
             before.destroy()
+        self._take_precision(tangent, self._interior)
         self._coarse.renew_bodies(tangent)
 
-    def _solve_given(self, tangent: Mat, b: Vec, rest: Vec, x: Vec) -> None:
+    def _take_precision(self, tangent: Mat, interior: Mat) -> None:
+        """Products with an interior that stays: in single precision where that serves, or blocks.
+
+        Args:
+            tangent: Tangent of all unknowns.
+            interior: That of the interior; destroyed where something else takes its place.
+        """
+        assert self._split is not None and self._smoother is not None
+        if self._mixed is not None:
+            self._mixed.destroy()
+        self._mixed, split = None, self._split
+        if self._mixes and self._smoother.of_products:
+            rows = InteriorRows(tangent, split.interior)
+            self._mixed = MixedResidual(rows, split.patch)
+            self._mixed.take(tangent)
+            single = SingleInterior(rows, self._rest, split.given, self._problem.assembly.scale)
+            self._interior = single.matrix(tangent.getComm())
+            self._smoother.renew(self._interior)
+            interior.destroy()
+        elif self._problem.linear:  # else every tangent would have to be converted
+            interior.convert(PETSc.Mat.Type.BAIJ)
+
+    def _solve_given(self, balance: Residual, b: Vec, rest: Vec, x: Vec) -> None:
         """Unknowns with a row of their own, and what they leave of the other rows."""
         assert self._split is not None
         given, least = self._split.given, NEGLIGIBLE * b.norm()
@@ -206,7 +248,7 @@ class Levels:
             most = float(np.abs(left).max(initial=0.0))
             if self._problem.comm.allreduce(most, MPI.MAX) <= least:
                 return
-            residual(tangent, b, x, rest)
+            balance(b, x, rest)
 
 
 def _worth_it(found: Sequence[Aggregates], kept: int) -> list[Aggregates]:

@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel, Inverse
-from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle
+from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle, residual
 from anisocontact.solver.strategies.iterative.factor import Factor
 from anisocontact.solver.strategies.iterative.interpolation import (
     Aggregates,
@@ -79,7 +79,8 @@ class Nested:
         """See `Inverse.solve`."""
         self._x.zeroEntries()
         right.copy(self._rest)
-        cycle(self._matrix, self._smoother, self._coarse, right, self._rest, self._x)
+        balance = residual(self._matrix)
+        cycle(balance, self._smoother, self._coarse, right, self._rest, self._x)
         return self._x
 
     def destroy(self) -> None:
