@@ -65,19 +65,13 @@ using Rows = std::array<Row, 3>;
 struct alignas(64) NodeRow : std::array<double, most_nodes> {};
 
 /// Columns of some nodes, one after the other: rows of the changes, times area, of what the values of
-/// the shape functions, their derivatives and their second derivatives are multiplied with.
+/// the shape functions and their derivatives are multiplied with; and what moves these derivatives,
+/// m_j M_,jk d xi^k.
 struct ColumnRows {
   std::array<Rows, 3> acting;  ///< force, and levers on both derivatives
-  std::array<Rows, 3> bend;
+  std::array<const double*, 2> xi;
+  std::array<Vec3<double>, 2> couple;  ///< times area
 };
-
-/// Second derivatives of a master's shape functions that are not zero: the first one of 11, 12, 22,
-/// and the one after the last.
-constexpr std::array<std::size_t, 2> bends(std::size_t masters) {
-  if (masters == 3) return {0, 0};
-  if (masters == 4) return {1, 2};
-  return {0, 3};
-}
 
 /// out = sum of factors times rows, or out += sum where it is not `Fresh`.
 template <bool Fresh, std::size_t K, class Length>
@@ -140,8 +134,10 @@ class Columns {
       else
         lever<6>(length, j, out.acting[1 + j]);
     }
-    for (std::size_t k = bends(masters)[0]; k < bends(masters)[1]; ++k)
-      bend(length, k, out.bend[k]);
+    for (std::size_t j = 0; j < 2; ++j) {
+      out.xi[j] = near_[j].data();
+      out.couple[j] = area_ * r_.couple[j];
+    }
   }
 
   /// Columns of the nodes of the facet on which the history was committed.
@@ -223,16 +219,6 @@ class Columns {
     }
   }
 
-  /// m_j d xi^k M_,jk, the mixed derivative once.
-  template <class Length>
-  ANISOCONTACT_INLINE void bend(Length length, std::size_t k, Rows& out) {
-    const std::size_t a = k / 2, b = k - a;  // 11, 12, 22
-    for (std::size_t i = 0; i < 3; ++i)
-      combine<true, 2>(
-          length, {area_ * part(r_.couple[a], i), a == b ? 0.0 : area_ * part(r_.couple[b], i)},
-          {near_[b].data(), near_[a].data()}, out[i].data());
-  }
-
   const PairResult& r_;
   const PairSlopes& d_;
   const PairShapes& s_;
@@ -244,21 +230,23 @@ class Columns {
   Row growth_;
 };
 
-/// Adds the rows of the nodes of the master, with so many bends from the first on.
-template <bool Fresh, std::size_t Bends, class Masters, class Length>
-ANISOCONTACT_INLINE void add_master_rows(Masters masters, Length length, std::size_t first,
-                                         const NodalShape& s, const ColumnRows& columns,
-                                         double* out) noexcept {
+/// Adds the rows of the nodes of the master; `Bent` where their second derivatives count.
+template <bool Fresh, bool Bent, class Masters, class Length>
+ANISOCONTACT_INLINE void add_master_rows(Masters masters, Length length, const NodalShape& s,
+                                         const ColumnRows& columns, double* out) noexcept {
+  constexpr std::size_t terms = Bent ? 5 : 3;
+  const auto& m = columns.couple;
   for (std::size_t b = 0; b < masters; ++b)
     for (std::size_t i = 0; i < 3; ++i, out += length) {
-      std::array<double, 3 + Bends> c{s.N[b], -s.dN[b][0], -s.dN[b][1]};
-      std::array<const double*, 3 + Bends> rows{
+      std::array<double, terms> c{s.N[b], -s.dN[b][0], -s.dN[b][1]};
+      std::array<const double*, terms> rows{
           columns.acting[0][i].data(), columns.acting[1][i].data(), columns.acting[2][i].data()};
-      for (std::size_t k = 0; k < Bends; ++k) {
-        c[3 + k] = -s.d2N[b][first + k];
-        rows[3 + k] = columns.bend[first + k][i].data();
-      }
-      combine<Fresh, 3 + Bends>(length, c, rows, out);
+      if constexpr (Bent)
+        for (std::size_t k = 0; k < 2; ++k) {
+          c[3 + k] = -(s.d2N[b][k] * part(m[0], i) + s.d2N[b][k + 1] * part(m[1], i));
+          rows[3 + k] = columns.xi[k];
+        }
+      combine<Fresh, terms>(length, c, rows, out);
     }
 }
 
@@ -271,13 +259,10 @@ ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
   for (std::size_t a = 0; a < slaves; ++a)
     for (std::size_t i = 0; i < 3; ++i, out += length)
       combine<Fresh, 1>(length, {-s.slave.N[a]}, {columns.acting[0][i].data()}, out);
-  const auto [first, last] = bends(masters);
-  if (!bent || last == first)
-    add_master_rows<Fresh, 0>(masters, length, first, s.master, columns, out);
-  else if (last == first + 1)
-    add_master_rows<Fresh, 1>(masters, length, first, s.master, columns, out);
+  if (!bent || masters == 3)
+    add_master_rows<Fresh, false>(masters, length, s.master, columns, out);
   else
-    add_master_rows<Fresh, 3>(masters, length, first, s.master, columns, out);
+    add_master_rows<Fresh, true>(masters, length, s.master, columns, out);
 }
 template <class Slaves, class Masters, class Length>
 ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,

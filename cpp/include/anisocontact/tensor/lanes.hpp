@@ -22,6 +22,18 @@ struct RegisterOf {
   using anywhere = double;
 #endif
 };
+
+/// Writes four numbers to a register, from halves that every processor has: one that is made before the
+/// compiler knows of wide registers goes through memory.
+template <class Register>
+ANISOCONTACT_INLINE void join(double a, double b, double c, double d, Register& to) {
+#if defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)
+  using Half [[gnu::vector_size(2 * sizeof(double))]] = double;
+  to = __builtin_shufflevector(Half{a, b}, Half{c, d}, 0, 1, 2, 3);
+#else
+  to = Register{a, b, c, d};
+#endif
+}
 }  // namespace detail
 
 /// L numbers in registers of W.
@@ -32,16 +44,23 @@ class alignas(W * sizeof(double)) Lanes {
   ANISOCONTACT_INLINE explicit Lanes(double x) {
     for (auto& one : r_) one = Register{} + x;
   }
+  // Register by register: copied as bytes they would go in halves, and who reads the whole would wait.
+  ANISOCONTACT_INLINE Lanes(const Lanes& x) { copy(x); }
+  ANISOCONTACT_INLINE Lanes& operator=(const Lanes& x) {
+    copy(x);
+    return *this;
+  }
   /// Of L numbers.
   template <class... Numbers>
     requires(sizeof...(Numbers) == L)
   ANISOCONTACT_INLINE static Lanes of(Numbers... x) {
-    Lanes out;
-    if constexpr (count == 1)
-      out.r_[0] = Register{x...};
-    else
-      out = from(std::array<double, L>{x...}.data());
-    return out;
+    if constexpr (count == 1 && L == 4) {
+      Lanes out;
+      detail::join(x..., out.r_[0]);
+      return out;
+    } else {
+      return from(std::array<double, L>{x...}.data());
+    }
   }
   /// Numbers in memory, registers `stride` apart. They are read as a whole: the halves of a register that
   /// were copied apart would have to wait for each other.
@@ -93,6 +112,10 @@ class alignas(W * sizeof(double)) Lanes {
   }
 
  private:
+  ANISOCONTACT_INLINE void copy(const Lanes& x) {
+    for (std::size_t c = 0; c < count; ++c) r_[c] = x.r_[c];
+  }
+
   using Register = typename detail::RegisterOf<W>::type;
   using Anywhere = typename detail::RegisterOf<W>::anywhere;
   static constexpr std::size_t count = L * sizeof(double) / sizeof(Register);
