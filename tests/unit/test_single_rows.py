@@ -91,7 +91,7 @@ def test_residual_has_the_patch_in_double_precision(entries, matrix):
 
 
 def test_what_single_precision_spoils_is_seen_once_for_each_matrix(matrix):
-    """Beside a right-hand side of a millionth of `A x` rounding is no residual."""
+    """Beside a right-hand side of 1e-8 of `A x` the residual is rounding alone."""
     rows, (b, x) = InteriorRows(matrix, of_nodes(INTERIOR)), vectors(matrix, 2)
     mixed = MixedResidual(rows, of_nodes([1, 4, 8, 9]))
     for size, trusted in ((1.0, True), (1e-8, False)):

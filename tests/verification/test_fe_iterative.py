@@ -28,7 +28,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
-from anisocontact.solver.strategies.iterative import factor, levels, nested, newton
+from anisocontact.solver.strategies.iterative import factor, levels, nested, newton, single_rows
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -229,6 +229,21 @@ def test_a_coarse_factor_in_single_precision_that_is_not_enough(
     notes = _same(_pair, [PRESS])
     assert notes.count(told) == 1
     assert _counts(notes) == _counts(usual)
+
+
+def test_products_in_single_precision_that_are_not_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where they are too far from those in double precision these take their place.
+
+    Requirement: with none that is near enough the same answers, and counts within one; it is said
+    once. Without that nothing is said.
+    """
+    told = "products with the interior are in double precision from now on"
+    usual = _same(_pair, [PRESS])
+    assert told not in usual
+    monkeypatch.setattr(single_rows, "TRUSTED", 0.0)
+    notes = _same(_pair, [PRESS])
+    assert notes.count(told) == 1
+    assert abs(_counts(notes)[1] - _counts(usual)[1]) <= 1
 
 
 def test_motions_of_aggregates_that_depend_on_each_other(monkeypatch: pytest.MonkeyPatch) -> None:

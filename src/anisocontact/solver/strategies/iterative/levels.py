@@ -230,7 +230,6 @@ class Levels:
         if self._mixes and self._smoother.of_products:
             rows = InteriorRows(tangent, split.interior)
             self._mixed = MixedResidual(rows, split.patch)
-            self._mixed.take(tangent)
             single = SingleInterior(rows, self._rest, split.given, self._problem.assembly.scale)
             self._interior = single.matrix(tangent.getComm())
             self._smoother.renew(self._interior)
