@@ -225,7 +225,7 @@ def _with_laws(surface: Any, law: ContactLaw | None) -> Interface:
 
 
 def _folded(model: Model, slave: str, master: str, options: ContactOptions) -> ContactOptions:
-    """ContactOptions of self-contact, a group against itself.
+    """Options of self-contact, a group against itself.
 
     What is near in the reference configuration and does not face each other does not count:
     neighbours, and the other side of a thin wall.

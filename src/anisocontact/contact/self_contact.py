@@ -41,7 +41,7 @@ class SelfContactSides:
         Facets that face others for the first time take sides until `commit` or `roll_back`.
 
         Args:
-            pairs: FacetPairs that face each other.
+            pairs: Pairs of facets that face each other.
             masters: Numbers in the whole group of the facets of the master here.
         """
         first, second = self._numbers[pairs.slave], masters[pairs.master]

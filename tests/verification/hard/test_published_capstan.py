@@ -146,12 +146,12 @@ def test_drifting_belt(strategy: str, to_the_end: Callable[..., Any]) -> None:
 
     Requirement: pulls within 1e-4 of Euler's with what the friction ellipse has for a force
     around the drum, 1 / sqrt(F_tt); drift over the way of the drum within 1e-3 of F_tz / F_tt,
-    the slip normal to the ellipse there; friction dissipates what turns the drum, to 1e-5, and
-    stabilisation nothing. Source: with no force along the drum the traction is around it
-    everywhere, and the slip F T. Tolerance: measured 2e-5, 5e-4, the stretch of
-    the belt as it begins to slide, and 8e-7. Springs keep the belt
-    while its place is found; with work counted on the way over which they let it go, friction
-    dissipated twice as much, and springs 0.4 of the work.
+    the slip normal to the ellipse there; in the last two increments, where all slides, friction
+    dissipates what turns the drum, to 1e-5, and stabilisation nothing. Source: with no force along
+    the drum the traction is around it everywhere, and the slip F T. Tolerance: measured 2e-5, 5e-4,
+    the stretch of the belt as it begins to slide, and 8e-7. Springs keep the belt while its place
+    is found; with work counted on the way over which they let it go, friction dissipated twice as
+    much, and springs 0.4 of the work.
     """
     angle, first, second = np.radians(30.0), 0.5, 0.2
     grooves = '{ kind = "coordinate-lines", angle_deg = 30 }'

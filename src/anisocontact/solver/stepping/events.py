@@ -253,8 +253,7 @@ def _of_problem(problem: Problem, until: Until, x: Vec | None, field: str) -> fl
     Raises:
         InputError: It failed, or returned something else than a finite number.
     """
-    if until.measure is None:
-        return 0.0
+    assert until.measure is not None
     if x is not None:
         problem.evaluate_at(x)
     field = f"{field}.measure"

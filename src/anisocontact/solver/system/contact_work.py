@@ -36,9 +36,10 @@ CHANGED = 0.05
 BACK = -0.5
 #: What the laws have to add to the mean of both ends, over the work so far: what would warn.
 COARSE = LARGE
-#: Share of the work so far by which a point may change the rule, or pushing overlaps apart adds to
-#: it, and points at which the rule ends.
+#: Share of the work so far by which a point may change the rule, and points at which it ends.
 FINE, MOST = 1e-3, 32
+#: Share of the work so far that pushing overlaps apart may take where laws are still asked.
+APART = 1e-3
 #: Share of the pressure that points may lose which open: half of what friction does there is missed
 #: by the laws, which have no pressure at the end.
 LOST = 2.0 * LARGE
@@ -218,7 +219,7 @@ class ContactWork:
         local = np.array([_pressures(contact, prescribed) for contact in self._contacts])
         before, lost, after, apart = np.reshape(self._comm.allreduce(local), (-1, 4)).T
         landed = not prescribed and bool(np.any((before == 0.0) & (after > 0.0)))
-        pushed = bool(apart.sum() > FINE * abs(work))
+        pushed = bool(apart.sum() > APART * abs(work))
         return landed or pushed or bool(lost.sum() > LOST * before.sum())
 
     def _passing(self, nodal: Floats) -> _Passed:
