@@ -17,7 +17,7 @@ TOUCHING = 0.01
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
 #: Share of what springs carry beyond which loads have to be what they stand against.
-DRIVEN = 1e-3
+DRIVEN = 0.5
 #: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
 PRESSED = 0.01
 

@@ -234,7 +234,8 @@ class Stabilisation(Term):
         if not self._free:
             return False
         force = self.force(u)
-        self._driven |= any([free.against_loads(force) for free in self._free])
+        if self._count == 0:  # later springs fade, and any load is most of them
+            self._driven |= any([free.against_loads(force) for free in self._free])
         # what springs have carried is let go where the next equilibrium starts
         against = 0.5 * (self._carried + force + self._stopping(u))
         if self._driven:
