@@ -1,11 +1,17 @@
 """Rows of an interior in single precision, and where they are trusted."""
 
+import shutil
+import subprocess
+import sys
+import tracemalloc
+
 import numpy as np
 import pytest
 import scipy
 
 from anisocontact import _core
 from anisocontact.base.fenicsx import PETSc
+from anisocontact.solver.strategies.iterative import single_rows
 from anisocontact.solver.strategies.iterative.single_rows import (
     InteriorRows,
     MixedResidual,
@@ -16,6 +22,29 @@ from anisocontact.solver.strategies.iterative.single_rows import (
 SINGLE = 1e-6
 NODES = 12
 INTERIOR = [0, 2, 3, 5, 6, 7, 10, 11]
+#: Rows of a Laplacian, nine at a time, of which the second process has none; its largest error.
+ON_TWO = """
+import numpy as np
+from anisocontact.base.fenicsx import MPI, PETSc
+from anisocontact.solver.strategies.iterative import single_rows
+
+single_rows.AT_ONCE, comm, n = 9, MPI.COMM_WORLD, 20
+first = 3 * n * comm.rank
+matrix = PETSc.Mat().createAIJ(((3 * n, None), (3 * n, None)), nnz=5, comm=comm)
+for row in range(first, first + 3 * n):
+    for column in range(max(row - 1, 0), min(row + 2, 6 * n)):
+        matrix[row, column] = 2.0 if row == column else -1.0
+matrix.assemble()
+nodes = np.arange(0 if comm.rank else n, dtype=np.int32)
+rows = single_rows.InteriorRows(matrix, PETSc.IS().createBlock(3, nodes, comm))
+x = matrix.createVecRight()
+x.array[:] = np.arange(first, first + 3 * n) ** 2
+wanted = matrix.createVecLeft()
+matrix.mult(x, wanted)
+off = np.abs(rows.times(x) - wanted.array_r[rows.here]).max(initial=0.0)
+count, off = comm.allreduce(len(rows.here)), comm.allreduce(off, MPI.MAX)
+print(f"{count} {off}" if comm.rank else "")
+"""
 
 
 def of_nodes(nodes):
@@ -48,13 +77,45 @@ def vectors(matrix, count):
     return found
 
 
-def test_products(entries, matrix):
-    """Rows of some nodes times a vector are those of the matrix, to single precision."""
+@pytest.mark.parametrize("at_once", [3, 15, 24, 9000])
+def test_products(entries, matrix, at_once, monkeypatch):
+    """Rows of some nodes times a vector are those of the matrix, to single precision.
+
+    However many are taken over at once: the last part is as long as the others, shorter or alone.
+    """
+    monkeypatch.setattr(single_rows, "AT_ONCE", at_once)
     rows = InteriorRows(matrix, of_nodes(INTERIOR))
     (x,) = vectors(matrix, 1)
     wanted = (entries @ x.array_r)[rows.here]
     assert np.abs(rows.times(x) - wanted).max() < SINGLE * np.abs(wanted).max()
     assert np.array_equal(rows.diagonal, np.diag(entries)[rows.here])
+
+
+@pytest.mark.mpi
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="no mpirun")
+def test_a_process_without_rows_takes_part():
+    """Others have rows left to take over, also of columns that are not theirs. Exact: integers."""
+    command = ["timeout", "100", "mpirun", "-n", "2", sys.executable, "-c", ON_TWO]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["60", "0.0"], done.stderr
+
+
+def test_taken_over_in_little_memory(monkeypatch):
+    """Beside the rows in single precision, twice while parts of them are joined, there is little.
+
+    A copy of the matrix alone takes 12 bytes an entry, these rows 4.4 of each time.
+    """
+    monkeypatch.setattr(single_rows, "AT_ONCE", 30)
+    nodes, beside = 1000, 40
+    band = scipy.sparse.diags_array(np.ones(beside), offsets=range(beside), shape=(nodes, nodes))
+    whole = scipy.sparse.kron(band, np.ones((3, 3)), format="csr")
+    csr = (whole.indptr.astype(np.int32), whole.indices.astype(np.int32), whole.data)
+    matrix = PETSc.Mat().createAIJ(whole.shape, csr=csr, comm=PETSc.COMM_SELF)
+    tracemalloc.start()
+    InteriorRows(matrix, of_nodes(range(nodes)))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 12.0 * whole.nnz
 
 
 def test_interior_alone(entries, matrix):

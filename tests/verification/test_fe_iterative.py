@@ -346,8 +346,9 @@ SCRIPT = """
 import sys
 from tests.verification.test_fe_iterative import CLAMP, DRAG, _on_plane, _pair
 from anisocontact.solver import Solver, Step
-from anisocontact.solver.strategies.iterative import levels, newton
+from anisocontact.solver.strategies.iterative import levels, newton, single_rows
 
+single_rows.AT_ONCE = 9  # in more parts on one process than on the other
 if "every level" in sys.argv:
     levels.FEW, levels.MANY = 0, 0.0
     newton.DEFAULTS["aggregates_pc_gamg_coarse_eq_limit"] = 10

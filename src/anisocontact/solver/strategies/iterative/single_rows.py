@@ -11,13 +11,13 @@ import scipy
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.cycle import residual
 
 Singles = npt.NDArray[np.float32]
 
-#: Rows that are taken over at once: memory in which they are twice.
-_AT_ONCE = 30_000
+#: Rows, three a node, that are taken over at once: only these stand in double precision as well.
+AT_ONCE = 9_000
 #: Numbers that are read past the last block, see `block_rows.hpp`.
 _PAST = 1
 #: Difference to double precision, over the right-hand side, up to which single precision is used.
@@ -50,6 +50,7 @@ class InteriorRows:
             blocks.append(part.data.transpose(0, 2, 1).astype(np.float32).reshape(-1))
         self._starts = np.concatenate(starts).astype(np.int32)
         self._blocks = np.concatenate([*blocks, np.zeros(_PAST, dtype=np.float32)])
+        blocks.clear()
         node = np.concatenate([np.zeros(0, dtype=np.int64), *columns])
         outside = (node < first // 3) | (node >= last // 3)
         others = np.unique(node[outside])
@@ -77,12 +78,21 @@ class InteriorRows:
 
 
 def _blocks(matrix: Mat, rows: Ints) -> Iterator[Any]:
-    """Some rows of a matrix that this process owns in blocks, some at a time."""
-    starts, columns, values = matrix.getValuesCSR()
-    shape = (len(starts) - 1, matrix.getSize()[1])
-    whole: Any = scipy.sparse.csr_array((values, columns, starts), shape=shape)
-    for first in range(0, len(rows), _AT_ONCE):
-        yield whole[rows[first : first + _AT_ONCE]].tobsr((3, 3))
+    """Some rows of a matrix that this process owns in blocks, some at a time; collective."""
+    (first, last), comm = matrix.getOwnershipRange(), matrix.getComm()
+    every = PETSc.IS().createStride(last - first, first, 1, comm)
+    ends = range(AT_ONCE, AT_ONCE + comm.tompi4py().allreduce(len(rows), MPI.MAX), AT_ONCE)
+    for end in ends:
+        here = (first + rows[end - AT_ONCE : end]).astype(PETSc.IntType)
+        some = PETSc.IS().createGeneral(here, comm)
+        part = matrix.createSubMatrix(some, every)
+        starts, columns, values = part.getValuesCSR()
+        shape = (len(here), matrix.getSize()[1])
+        if len(here):  # others may have rows left
+            yield scipy.sparse.csr_array((values, columns, starts), shape=shape).tobsr((3, 3))
+        part.destroy()
+        some.destroy()
+    every.destroy()
 
 
 class SingleInterior:
