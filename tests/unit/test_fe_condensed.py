@@ -54,6 +54,22 @@ def test_partial_factor(way: Any) -> None:
     factor.close()
 
 
+@pytest.mark.parametrize("exponent", [-66, -300, 66, 300])
+def test_partial_factor_in_any_units(way: Any, exponent: int) -> None:
+    """A matrix times a power of two has the same solutions, and S times it.
+
+    MUMPS, which looks for no pivots there, takes those below 1e-16 for zero: a body with a modulus
+    of 1e-19 was singular. Tolerance: rounding.
+    """
+    matrix, border, size = matrix_of(40), np.array([3, 7, 8, 20, 33]), 2.0**exponent
+    plain, scaled = way(matrix, border), way(size * matrix, border)
+    np.testing.assert_allclose(scaled.schur / size, plain.schur, atol=1e-13)
+    b = np.random.default_rng(1).random((40, 2))
+    np.testing.assert_allclose(scaled.interior(size * b), plain.interior(b), atol=1e-13)
+    for factor in (plain, scaled):
+        factor.close()
+
+
 def test_mkl_is_found_where_packages_put_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -118,6 +118,16 @@ def test_taken_over_in_little_memory(monkeypatch):
     assert peak < 12.0 * whole.nnz
 
 
+@pytest.mark.parametrize("exponent", [-140, 140])
+def test_products_in_any_units(entries, matrix, exponent):
+    """Numbers beyond the range of single precision: the same products to the last bit."""
+    (x,) = vectors(matrix, 1)
+    usual = InteriorRows(matrix, of_nodes(INTERIOR)).times(x)
+    matrix.scale(2.0**exponent)
+    x.scale(2.0**-exponent)  # as what solves for a right-hand side of usual size
+    assert np.array_equal(InteriorRows(matrix, of_nodes(INTERIOR)).times(x), usual)
+
+
 def test_interior_alone(entries, matrix):
     """The interior has rows and columns of given unknowns emptied, as the one in double precision.
 

@@ -19,6 +19,7 @@ from anisocontact.solver.strategies.condensed.factor import (
     singular,
     solves,
 )
+from anisocontact.solver.strategies.units import unit
 
 #: MUMPS: what a solution does with the Schur complement, and "the interior alone".
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0
@@ -69,6 +70,10 @@ class MumpsFactor(Eliminated):
     def __init__(self, matrix: scipy.sparse.csr_array, border: Ints) -> None:
         self._border = border
         given = aij(matrix)
+        # without a search for pivots MUMPS takes those below some 1e-16 for zero, in any units
+        stiff = matrix.diagonal()
+        self._unit = unit(float(stiff[stiff > 0.0].min(initial=np.inf)))
+        given.scale(self._unit)
         given.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         given.setOption(PETSc.Mat.Option.SPD, True)  # no pivots are looked for
         kind = PETSc.PC.Type.CHOLESKY
@@ -97,7 +102,7 @@ class MumpsFactor(Eliminated):
         right.setUp()
         left = right.duplicate()
         given = right.getDenseArray()
-        given[:] = b
+        given[:] = self._unit * b
         given[self._border] = 0.0
         right.assemble()
         self._factor.matSolve(right, left)
@@ -114,6 +119,7 @@ class MumpsFactor(Eliminated):
     def _schur_view(self, count: int) -> Floats:
         """S without a copy, made symmetric to the last bit."""
         _, view = schur_matrix(self._factor, count)
+        view /= self._unit
         mirror(view)
         return view
 

@@ -8,6 +8,7 @@ DEFAULTS: dict[str, OptionValue] = {
     "ksp_type": "fgmres",
     "ksp_gmres_restart": 60,
     "ksp_max_it": 180,
+    "ksp_atol": 0.0,  # a residual is small beside another one, in any units
     "pc_type": "python",
     # aggregates alone: they are smoothed with what is known of the patch
     "aggregates_pc_gamg_agg_nsmooths": 0,

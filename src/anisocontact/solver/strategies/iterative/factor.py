@@ -1,7 +1,8 @@
 """Factor of the coarsest level, or multigrid where it would not fit into memory.
 
 The factor is in single precision, in half of the memory and of the time, while that tells stiff
-contacts from soft bodies: Krylov iterations need no more of a preconditioner.
+contacts from soft bodies: Krylov iterations need no more of a preconditioner. In units in which
+its numbers are near the ends of single precision it is the factor of a multiple.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.iterative.split import set_any
+from anisocontact.solver.strategies.units import unit
 
 #: Options of the solver: of a factor, and where there is no room for one.
 FACTORISED: dict[str, OptionValue] = {
@@ -20,9 +22,17 @@ FACTORISED: dict[str, OptionValue] = {
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
 }
-ITERATED: dict[str, OptionValue] = {"ksp_type": "gmres", "ksp_rtol": 1e-2, "ksp_max_it": 30}
+ITERATED: dict[str, OptionValue] = {
+    "ksp_type": "gmres",
+    "ksp_rtol": 1e-2,
+    "ksp_atol": 0.0,
+    "ksp_max_it": 30,
+}
 #: Error of a known solution, over it, up to which a factor in single precision is trusted.
 TRUSTED = 0.05
+#: Largest entry, and one over it, beyond which it is brought to one: between 1 and 3e38, the end of
+#: single precision.
+LARGE = 1e15
 #: Stiffness against motions of the aggregates that depend on each other, over the largest one.
 SHIFT = 1e-9
 #: Share of such a motion that is left of it in the bodies, up to which they are at rest.
@@ -62,12 +72,14 @@ class Factor:
             note(f"{reason}: it is solved by GMRES with {kind}")
         self._solver = self._new_solver()
         self._right, self._left = matrix.createVecs()
+        self._unit = 1.0
+        self._scaled: Mat | None = None
 
     def renew(self, matrix: Mat, grown: bool, bodies: bool) -> bool:
         """See `Inverse.renew`."""
         if grown:  # on several processes PETSc would keep the symbolic factorisation
             self._solver.reset()
-        self._matrix = matrix
+        self._matrix = self._in_range(matrix)
         found = self._factorised()
         if self._exact and self.single and not (found and self._trusted()):
             self.single = False
@@ -79,11 +91,30 @@ class Factor:
     def solve(self, right: Vec) -> Vec:
         """Solution for a right-hand side; overwritten by the next call."""
         self._solver.solve(right, self._left)
+        if self._unit != 1.0:
+            self._left.scale(self._unit)
         return self._left
 
     def destroy(self) -> None:
         """Give back PETSc's objects."""
         self._solver.destroy()
+        if self._scaled is not None:
+            self._scaled.destroy()
+
+    def _in_range(self, matrix: Mat) -> Mat:
+        """The matrix, or a multiple of it whose numbers are in the range of single precision."""
+        diagonal = matrix.getDiagonal()
+        diagonal.abs()
+        largest = float(diagonal.max()[1])
+        if self._scaled is not None:
+            self._scaled.destroy()
+            self._scaled = None
+        self._unit = 1.0 if 1.0 / LARGE < largest < LARGE else unit(largest)
+        if self._unit == 1.0:
+            return matrix
+        self._scaled = matrix.copy()
+        self._scaled.scale(self._unit)
+        return self._scaled
 
     def _new_solver(self) -> PETSc.KSP:
         solver = PETSc.KSP().create(self._matrix.getComm())

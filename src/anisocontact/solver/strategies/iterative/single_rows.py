@@ -13,6 +13,7 @@ from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.cycle import residual
+from anisocontact.solver.strategies.units import unit
 
 Singles = npt.NDArray[np.float32]
 
@@ -27,7 +28,8 @@ TRUSTED = 0.05
 class InteriorRows:
     """Rows of the interior of a matrix in blocks of 3 x 3 and single precision; collective.
 
-    They need 4.4 bytes an entry, rows of single entries in double precision 12.
+    They need 4.4 bytes an entry, rows of single entries in double precision 12. A power of two
+    brings them into the range of single precision, in any units.
 
     Args:
         matrix: Matrix of all unknowns, three a node.
@@ -43,11 +45,13 @@ class InteriorRows:
         self._own = last - first
         self.here: Ints = interior.getIndices() - first
         self.diagonal: Floats = matrix.getDiagonal().array_r[self.here]
+        self._unit = unit(float(np.abs(self.diagonal).max(initial=0.0)))
         starts, columns, blocks = [np.zeros(1, dtype=np.int32)], [], []
         for part in _blocks(matrix, self.here):
             starts.append(starts[-1][-1] + part.indptr[1:])
             columns.append(part.indices)
-            blocks.append(part.data.transpose(0, 2, 1).astype(np.float32).reshape(-1))
+            entries = self._unit * part.data.transpose(0, 2, 1)
+            blocks.append(entries.astype(np.float32).reshape(-1))
         self._starts = np.concatenate(starts).astype(np.int32)
         self._blocks = np.concatenate([*blocks, np.zeros(_PAST, dtype=np.float32)])
         blocks.clear()
@@ -64,8 +68,9 @@ class InteriorRows:
     def times(self, x: Vec) -> Singles:
         """These rows times all unknowns, (m,)."""
         self._gather.scatter(x, self._beside)
-        self._x[: self._own] = x.array_r
-        self._x[self._own :] = self._beside.array_r
+        back = 1.0 / self._unit
+        np.multiply(x.array_r, back, out=self._x[: self._own], casting="same_kind")
+        np.multiply(self._beside.array_r, back, out=self._x[self._own :], casting="same_kind")
         found: Singles = _core.multiply_block_rows(
             self._starts, self._columns, self._blocks, self._x
         )

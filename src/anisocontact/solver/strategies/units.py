@@ -1,0 +1,21 @@
+"""Powers of two that bring numbers in any units to about one: they round nothing."""
+
+from __future__ import annotations
+
+import math
+
+
+def unit(size: float) -> float:
+    """Power of two with which a number is about one.
+
+    Args:
+        size: The number, not negative.
+
+    Returns:
+        The factor that brings it to between 0.5 and 1; 1 where there is nothing to bring there.
+
+    Example:
+        >>> unit(3e-20) * 3e-20, unit(6.0), unit(0.0)
+        (0.55..., 0.125, 1.0)
+    """
+    return math.ldexp(1.0, -math.frexp(size)[1]) if math.isfinite(size) else 1.0
