@@ -21,7 +21,7 @@ from mpi4py import MPI
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
 from anisocontact.contact.facet_mesh import FacetMesh, facet_rule, isoparametric
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.interface import STATE, ContactLaw, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import TOPOLOGIES, FacetProjections, FacetSurface
@@ -76,7 +76,9 @@ class Sheets:
         facets = FacetMesh(self.topology, upper, ~flip)
         rule = facet_rule(self.topology, DEGREE[self.topology])
         quadrature = isoparametric(facets, rule, self.reference)
-        self.points = SlavePoints(quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF)
+        self.points = IntegrationPoints(
+            quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF
+        )
         self.surface = FacetSurface(self.reference, lower, self.topology)
         kind = list(TOPOLOGIES).index(self.topology)
         self.master = (lower, np.full(len(lower), kind, dtype=np.int8), flip)

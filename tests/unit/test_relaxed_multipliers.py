@@ -12,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.contact.multipliers import NotHeldError
-from anisocontact.contact.nested import Nested
+from anisocontact.contact.nested_uzawa import NestedUzawa
 from anisocontact.contact.semismooth import Semismooth
 
 PRESSED = """
@@ -64,7 +64,7 @@ def never_held(monkeypatch: pytest.MonkeyPatch) -> None:
         raise NotHeldError("never")
 
     monkeypatch.setattr(Semismooth, "consistent", lambda *_: False)
-    monkeypatch.setattr(Nested, "improve", improve)
+    monkeypatch.setattr(NestedUzawa, "improve", improve)
 
 
 @pytest.mark.usefixtures("never_held")

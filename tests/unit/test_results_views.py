@@ -17,13 +17,13 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.figure_style import new_figure
 from anisocontact.cli.main import main
 from anisocontact.interface import STATUS
-from anisocontact.results.cut import Cut
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, caption, surfaces
 from anisocontact.results.report import curves, maps
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
 from anisocontact.results.report.shape import Drawings
+from anisocontact.results.section_plane import SectionPlane
 from anisocontact.results.solids import Solid
 
 
@@ -74,7 +74,7 @@ def test_a_cut_leaves_bodies_to_look_at(largest, cut, bounds):
     """
     grid = Solid(_block(*largest))
     drawn = surfaces(grid, 1.0, SHOWN["principal_stress"])
-    assert drawn.cut == (None if cut is None else Cut(*cut))
+    assert drawn.cut == (None if cut is None else SectionPlane(*cut))
     assert drawn.skin.bounds[:4] == bounds
     assert drawn.skin.values("value").max() == 9.0
     heading = caption(1.0, drawn.cut)

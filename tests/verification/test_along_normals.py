@@ -12,7 +12,7 @@ from tests.verification.slid_blocks import force_of, linear_force, slid
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.contact import Contact
-from anisocontact.contact.along_normals import Places, along_normals
+from anisocontact.contact.along_normals import NormalProjections, along_normals
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
@@ -34,7 +34,7 @@ def _cap(cell: str, n: int = 6) -> FacetSurface:
     return FacetSurface(nodes, quads[:, [0, 1, 2, 1, 3, 2]].reshape(-1, 3).astype(np.int32), cell)
 
 
-def _placed(cell: str, x: Floats, normal: Floats) -> tuple[FacetSurface, Places]:
+def _placed(cell: str, x: Floats, normal: Floats) -> tuple[FacetSurface, NormalProjections]:
     surface = _cap(cell)
     master = SimpleNamespace(topology=cell)
     sides: Any = SimpleNamespace(surface=surface, master=master, excluded=None, reach=np.inf)
@@ -153,7 +153,7 @@ def test_hollow_borders_keep_their_nodes(side: float) -> None:
     )
     normal = np.array([[0.0, 0.0, 1.0]])
 
-    def place(shift: float, before: Places | None) -> Places:
+    def place(shift: float, before: NormalProjections | None) -> NormalProjections:
         at = np.array([[1.0, shift, 0.1]])
         return along_normals(sides, at, normal, surface.project(at), before)
 

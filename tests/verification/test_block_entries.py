@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from anisocontact.solver.strategies.condensed.places import Places
+from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap
 
 
 def test_couplings_are_summed_as_by_scipy() -> None:
@@ -22,7 +22,7 @@ def test_couplings_are_summed_as_by_scipy() -> None:
     for p, r, c in ((5, 2, 3), (4, 1, 4), (6, 1, 1)):
         rows, columns = (random.integers(-1, nodes, (p, k)) for k in (r, c))
         couplings.append((rows, columns, random.normal(size=(p, r, c, 3, 3))))
-    places = Places(number)
+    places = AssemblyMap(number)
     found = places.total(couplings, size)
     entries = np.append(number, [-1] * 3).reshape(-1, 3)
     expected = np.zeros((size, size))

@@ -28,7 +28,13 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
-from anisocontact.solver.strategies.iterative import factor, levels, nested, newton, single_rows
+from anisocontact.solver.strategies.iterative import (
+    factor,
+    levels,
+    multilevel_inverse,
+    newton,
+    single_rows,
+)
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -187,18 +193,18 @@ def test_cycle_of_a_coarse_level(monkeypatch: pytest.MonkeyPatch) -> None:
     Requirement: `x B y = y B x`, as of any such cycle; B of 2 A is half of that of A, with all that
     is kept of the bodies renewed. Tolerance: 1e-4, a factor in single precision.
     """
-    made: list[nested.Nested] = []
-    right = nested.Nested.renew
+    made: list[multilevel_inverse.MultilevelInverse] = []
+    right = multilevel_inverse.MultilevelInverse.renew
 
-    def seen(self: nested.Nested, *given: Any) -> bool:
+    def seen(self: multilevel_inverse.MultilevelInverse, *given: Any) -> bool:
         made.append(self)
         return right(self, *given)
 
-    monkeypatch.setattr(nested.Nested, "renew", seen)
+    monkeypatch.setattr(multilevel_inverse.MultilevelInverse, "renew", seen)
     monkeypatch.setattr(levels, "FEW", 0)
     monkeypatch.setattr(levels, "MANY", 0.0)
     monkeypatch.setitem(newton.DEFAULTS, "aggregates_pc_gamg_coarse_eq_limit", 10)
-    monkeypatch.setattr(nested.Nested, "destroy", lambda self: None)
+    monkeypatch.setattr(multilevel_inverse.MultilevelInverse, "destroy", lambda self: None)
     _run(_pair(4), [PRESS], "iterative")
     cycle, matrix = made[-1], made[-1]._matrix.copy()
     matrix.axpy(1.0, matrix.copy().transpose())

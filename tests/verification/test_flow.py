@@ -16,8 +16,8 @@ from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Solver, Step, StoppedError
 from anisocontact.solver.stepping import attempts
 from anisocontact.solver.stepping.attempts import Attempts
-from anisocontact.solver.terms import flow
-from anisocontact.solver.terms.flow import Flow
+from anisocontact.solver.terms import viscous_flow
+from anisocontact.solver.terms.viscous_flow import ViscousFlow
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
@@ -115,10 +115,10 @@ def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPat
         assert tried == ways
 
 
-def _flow() -> tuple[Flow, np.ndarray]:
+def _flow() -> tuple[ViscousFlow, np.ndarray]:
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
     u = np.zeros((8, 3))
-    carried = Flow(model, 10.0)
+    carried = ViscousFlow(model, 10.0)
     carried.start(u)
     return carried, u
 
@@ -128,20 +128,22 @@ def test_steps_grow_and_shrink() -> None:
     carried, u = _flow()
     first = carried.stiffness
     assert carried.improve(u + 0.1, at_work=0.0)
-    assert carried.stiffness == flow.LONGER * first
+    assert carried.stiffness == viscous_flow.LONGER * first
     assert carried.spent == pytest.approx(0.5 * first * 24 * 0.1**2)
     assert carried.force(u + 0.1) == pytest.approx(0.0)
     assert carried.soften()
-    assert carried.stiffness == flow.LONGER * flow.SHORTER * first
+    assert carried.stiffness == viscous_flow.LONGER * viscous_flow.SHORTER * first
     while carried.soften():
         pass
-    assert carried.stiffness > flow.MOST_VISCOUS * 10.0
+    assert carried.stiffness > viscous_flow.MOST_VISCOUS * 10.0
 
 
 def test_flow_without_end_is_given_up() -> None:
     """Bodies that never come to rest: no more than so many steps, then the attempt has failed."""
     carried, u = _flow()
-    for count in range(flow.MOST_STEPS):
+    for count in range(viscous_flow.MOST_STEPS):
         assert carried.improve(u + count, at_work=0.0)
-    with pytest.raises(NotHeldError, match=f"do not come to rest in {flow.MOST_STEPS} steps"):
+    with pytest.raises(
+        NotHeldError, match=f"do not come to rest in {viscous_flow.MOST_STEPS} steps"
+    ):
         carried.improve(u, at_work=0.0)

@@ -14,7 +14,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.contact.facet_mesh import FacetMesh, facet_rule, isoparametric
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.interface import STATE, ContactLaw, Interface, SlaveSurface, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
@@ -80,7 +80,7 @@ def test_between_facets(on: str, angle: float) -> None:
     nodes = np.array([[0, 1, 2, 3]], dtype=np.int32)
     facets, rule = FacetMesh("quad4", nodes, np.array([True])), facet_rule("quad4", 1)
     quadrature = isoparametric(facets, rule, reference)
-    points = SlavePoints(quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF)
+    points = IntegrationPoints(quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF)
     core = ContactLaw(*laws(on)).on_facets().core
     n = len(points.nodes)
     state = np.zeros(n, dtype=STATE)

@@ -160,7 +160,7 @@ class Plastic(ElasticVolume, Isotropic):
             dissipated=(stress * added).sum(1) - held,
         )
 
-    def _flow(self, trial: Floats, back: Floats, p: Floats) -> _Flow:
+    def _flow(self, trial: Floats, back: Floats, p: Floats) -> _PlasticFlow:
         """Plastic flow of points that are beyond the yield condition."""
         low = np.zeros(len(p))
         sizes = [np.sqrt((v**2 * self._weights).sum(1)) for v in (trial, back)]
@@ -197,7 +197,9 @@ class Plastic(ElasticVolume, Isotropic):
         size_slope = (along * offset_slope).sum(1) / size
         return _Returned(limit, limit_slope, kept, shrunk, along, offset_slope, size, size_slope)
 
-    def _answer(self, at: _Returned, trial: Floats, back: Floats, multiplier: Floats) -> _Flow:
+    def _answer(
+        self, at: _Returned, trial: Floats, back: Floats, multiplier: Floats
+    ) -> _PlasticFlow:
         g = 2.0 * self.shear
         share = multiplier / at.limit
         share_slope = (1.0 - share * at.limit_slope) / at.limit
@@ -209,7 +211,7 @@ class Plastic(ElasticVolume, Isotropic):
         moved = share_slope[:, None] * at.along + share[:, None] * self._weights * at.offset_slope
         direct = 1.0 - g * share[:, None] * self._weights / at.shrunk
         tangent = g * (direct[:, :, None] * np.eye(5) - g * moved[:, :, None] * by_trial[:, None])
-        return _Flow(multiplier, added, new_back, tangent)
+        return _PlasticFlow(multiplier, added, new_back, tangent)
 
 
 class Hill(Plastic):
@@ -328,7 +330,7 @@ class _Returned:
 
 
 @dataclass(frozen=True)
-class _Flow:
+class _PlasticFlow:
     """Multiplier, plastic strain that it adds, new back stress and tangent of points that flow."""
 
     multiplier: Floats

@@ -44,7 +44,7 @@ NEARER = 1e-3
 
 
 @dataclass(frozen=True)
-class Places:
+class NormalProjections:
     """Places on the master.
 
     Attributes:
@@ -60,8 +60,12 @@ class Places:
 
 
 def along_normals(
-    sides: Sides, x: Floats, normal: Floats, hit: FacetProjections, before: Places | None = None
-) -> Places:
+    sides: Sides,
+    x: Floats,
+    normal: Floats,
+    hit: FacetProjections,
+    before: NormalProjections | None = None,
+) -> NormalProjections:
     """Where normals of slave nodes meet the master.
 
     Args:
@@ -74,7 +78,7 @@ def along_normals(
     """
     there = hit.status <= FACET_STATUS.index("off")
     facet = np.where(there, hit.facet, -1).astype(np.int32)
-    places = Places(facet, np.nan_to_num(hit.xi), np.zeros((len(facet), 2)))
+    places = NormalProjections(facet, np.nan_to_num(hit.xi), np.zeros((len(facet), 2)))
     rest, at = np.flatnonzero(there), hit.take(np.flatnonzero(there))
     for tried in range(TRIED):
         found, xi = _met(sides, x[rest], normal[rest], at)
@@ -98,7 +102,9 @@ def along_normals(
     return places
 
 
-def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Places) -> None:
+def _stay(
+    sides: Sides, x: Floats, normal: Floats, places: NormalProjections, before: NormalProjections
+) -> None:
     """Leave places on the edges of the border where they were, unless others are nearer.
 
     A border that is hollow as seen from a node has two closest points, between which it would hop.
@@ -113,13 +119,18 @@ def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Place
     stayed = _kept(sides, x, normal, places, before, np.flatnonzero(moved & was_on_edge))
     for start, along in _BORDERS[sides.master.topology.rstrip("0123456789")]:
         n = len(before.facet)
-        side = Places(before.facet, np.tile(start, (n, 1)), np.tile(along, (n, 1)))
+        side = NormalProjections(before.facet, np.tile(start, (n, 1)), np.tile(along, (n, 1)))
         rest = np.flatnonzero(moved & ~was_on_edge & ~stayed)
         stayed |= _kept(sides, x, normal, places, side, rest)
 
 
 def _kept(
-    sides: Sides, x: Floats, normal: Floats, places: Places, other: Places, rows: Ints
+    sides: Sides,
+    x: Floats,
+    normal: Floats,
+    places: NormalProjections,
+    other: NormalProjections,
+    rows: Ints,
 ) -> Flags:
     """Take the places on other edges that next to none of some places, (m,), are nearer than.
 
@@ -130,7 +141,9 @@ def _kept(
     if not rows.size:
         return taken
     x, normal = x[rows], normal[rows]
-    now, then = (Places(p.facet[rows], p.xi[rows], p.edge[rows]) for p in (places, other))
+    now, then = (
+        NormalProjections(p.facet[rows], p.xi[rows], p.edge[rows]) for p in (places, other)
+    )
     then = _border(sides, x, normal, then)
     away, stayed = (
         np.linalg.norm(_across(x - sides.surface.jet(p.facet, p.xi).position, normal), axis=1)
@@ -142,7 +155,9 @@ def _kept(
     return taken
 
 
-def _put(places: Places, rows: Ints, facet: Locals, xi: Floats, edge: Floats | float) -> None:
+def _put(
+    places: NormalProjections, rows: Ints, facet: Locals, xi: Floats, edge: Floats | float
+) -> None:
     places.facet[rows], places.xi[rows], places.edge[rows] = facet, xi, edge
 
 
@@ -176,7 +191,9 @@ def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tup
     return x + way[:, None] * normal, opposed
 
 
-def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections | Places) -> Places:
+def _border(
+    sides: Sides, x: Floats, normal: Floats, at: FacetProjections | NormalProjections
+) -> NormalProjections:
     """Places on the edges of the border that are closest as seen along normals."""
     edge, xi = at.edge.copy(), at.xi.copy()
     least, most = _ends(xi, edge)
@@ -194,7 +211,7 @@ def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections | Plac
         if done:
             break
     edge[(along <= least) | (along >= most)] = 0.0
-    return Places(at.facet, xi + along[:, None] * at.edge, edge)
+    return NormalProjections(at.facet, xi + along[:, None] * at.edge, edge)
 
 
 def _ends(xi: Floats, edge: Floats) -> tuple[Floats, Floats]:

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from anisocontact.base.array_types import Codes, Floats, Locals
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master
-from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import Couplings, Surfaced
 from anisocontact.contact.side_of_master import Seen, SideOfMaster
 from anisocontact.interface import Interface, SlaveSurface, State
@@ -38,7 +38,7 @@ class AnalyticAnswer:
         own_stiffness: What `stiffness` is where the derivative is that of other laws.
     """
 
-    slave: SlavePoints
+    slave: IntegrationPoints
     there: Surfaced
     turned: SlaveSurface | None
     body: RigidBody | None
@@ -110,7 +110,7 @@ class AnalyticMaster(Master):
     """
 
     def __init__(
-        self, interface: Interface, body: RigidBody | None, slave: SlavePoints, comm: Any
+        self, interface: Interface, body: RigidBody | None, slave: IntegrationPoints, comm: Any
     ) -> None:
         self.interface, self.body, self._slave, self._comm = interface, body, slave, comm
         self._sees_slave = interface.takes_slave()

@@ -15,13 +15,13 @@ from anisocontact.base.typed import typed
 from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.contact.defaults import WithoutPenalty, exact
-from anisocontact.contact.making import (
+from anisocontact.contact.options import ContactOptions
+from anisocontact.contact.pair_parts import (
     DeprecatedArguments,
     SurfaceMaster,
     before_this,
-    parts_of,
+    make_pair_parts,
 )
-from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import STATUS, ContactLaw, Interface, Response
@@ -142,7 +142,7 @@ class Contact(ContactPair, OneHistory):
         ).decided(model, slave, master if isinstance(master, str) else None)
         self._made_of = model, master, law, options
         check_at_rest(model, "model")
-        parts = parts_of(model, slave, master, law, options)
+        parts = make_pair_parts(model, slave, master, law, options)
         super().__init__(model.unknowns, slave, name or slave, parts, options)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
@@ -188,7 +188,7 @@ class Contact(ContactPair, OneHistory):
             seams: Cut faces of slave and master, all with one turn, to either side.
         """
         model, master, law, options = self._made_of
-        parts = parts_of(model, self.slave, master, law, options, seams)
+        parts = make_pair_parts(model, self.slave, master, law, options, seams)
         ContactPair.__init__(self, model.unknowns, self.slave, self.name, parts, options)
         self.facet_of_point, self.goes_on = self.slave_points.facet, True
 

@@ -17,9 +17,9 @@ from anisocontact.contact.body_blocks import BodyBlocks
 from anisocontact.contact.energies import ContactEnergies
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.initial import check_start
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.options import ContactOptions
-from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.trials import Trials
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response
@@ -42,7 +42,7 @@ class PairParts:
         law: Laws, as the user gave them.
     """
 
-    points: SlavePoints
+    points: IntegrationPoints
     master: Master
     law: ContactLaw | Interface
 

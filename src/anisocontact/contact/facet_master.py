@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
-from anisocontact.contact.held_feet import HeldFeet, on_held_facets, projected_facets
+from anisocontact.contact.held_points import HeldPoints, on_held_facets, projected_facets
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.point_tangent import Nodes, PointTangent
@@ -191,7 +191,7 @@ class FacetMaster(MeshedMaster):
 
     @override
     def begin(self) -> None:
-        self._held = HeldFeet(self._count)
+        self._held = HeldPoints(self._count)
 
     @override
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:

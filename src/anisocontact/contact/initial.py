@@ -9,8 +9,8 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master
-from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 
@@ -38,7 +38,7 @@ class Overlap:
     count: int
 
 
-class Placed(Protocol):
+class PlacedSlave(Protocol):
     """Slave points where they are, with the space of the bodies: a contact or a pass of it."""
 
     space: Any
@@ -52,11 +52,11 @@ class Placed(Protocol):
         """The points, (n, 3), length."""
 
 
-class Beginning(Placed, Protocol):
+class Beginning(PlacedSlave, Protocol):
     """Slave points that meet a master for the first time."""
 
     slave: str
-    slave_points: SlavePoints
+    slave_points: IntegrationPoints
     master: Master
 
     @property
@@ -68,7 +68,7 @@ class Beginning(Placed, Protocol):
         """What the laws answer where the points are."""
 
 
-def initial_overlap(contact: Placed, size: float) -> Overlap | None:
+def initial_overlap(contact: PlacedSlave, size: float) -> Overlap | None:
     """Overlap of the accepted state.
 
     Args:

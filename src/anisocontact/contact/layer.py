@@ -66,7 +66,7 @@ class Layer:
         self._compliance, self._histories = compliance, histories
         self._normal, self._master, self._comm = normal, master, comm
         self._force: Floats = np.zeros((0, 3))
-        self._way = _Way(np.zeros((0, 2, 3)), np.zeros((0, 3, 3)))
+        self._way = _LayerCompliance(np.zeros((0, 2, 3)), np.zeros((0, 3, 3)))
         self._spin: Floats = np.zeros(0)
         self.share = 1.0
         self.ratio = 1.0 if normal is None else normal.ratio
@@ -88,7 +88,7 @@ class Layer:
         frames = Frames.of(self._master(start)[1])
         if not len(self._force):
             self._force, self._spin = np.zeros((len(start), 3)), np.zeros(len(start))
-            self._way = _Way(axes, np.zeros((len(start), 3, 3)))
+            self._way = _LayerCompliance(axes, np.zeros((len(start), 3, 3)))
         self._shift(begun, self._histories[0], self._way.under(self._force), frames)
         return begun
 
@@ -125,7 +125,7 @@ class Layer:
         if self._normal is not None:
             self._normal.share = self.share
             state, slip = self._normal.stiff(step)
-        self._way = _Way.of(step, self._compliance)
+        self._way = _LayerCompliance.of(step, self._compliance)
         self._spin = step.answer.state["spin"]
         found, rest = self._found(step), 1.0 / RATIO
         way = self._way.under(self._force - (1.0 - rest) * found)
@@ -192,7 +192,7 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class _Way:
+class _LayerCompliance:
     """How far the layer gives way at each point of a trial.
 
     Attributes:
@@ -205,7 +205,7 @@ class _Way:
     compliance: Floats
 
     @classmethod
-    def of(cls, step: ContactTrial, compliance: float) -> _Way:
+    def of(cls, step: ContactTrial, compliance: float) -> _LayerCompliance:
         touching = step.answer.status != OPEN
         axes = step.axes[touching]
         # the layer is one of the axes: e_a . way = c t_a for the force t_a e_a

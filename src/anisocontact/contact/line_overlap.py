@@ -50,7 +50,7 @@ class Number:
 
 
 @dataclass(frozen=True)
-class Overlap:
+class LineOverlap:
     """Parts of edges that face each other, as numbers along the part of the slave.
 
     Attributes:
@@ -65,7 +65,7 @@ class Overlap:
     high: Number
 
     @classmethod
-    def of(cls, x: Floats) -> Overlap:
+    def of(cls, x: Floats) -> LineOverlap:
         """Overlap of parts with their ends at x, (q, 4, 2), length."""
         t = x[:, 1] - x[:, 0]
         size = np.linalg.norm(t, axis=1)
@@ -89,9 +89,9 @@ class Overlap:
         high = high.where(high.of < length.of, length)
         return cls(length, (first, last), low, high)
 
-    def take(self, which: Ints) -> Overlap:
+    def take(self, which: Ints) -> LineOverlap:
         """Some of them."""
         first, last = (one.take(which) for one in self.ends)
-        return Overlap(
+        return LineOverlap(
             self.length.take(which), (first, last), self.low.take(which), self.high.take(which)
         )

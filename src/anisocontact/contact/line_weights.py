@@ -19,7 +19,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.facet_pairs import FacetPairs, FacingSides
-from anisocontact.contact.line_overlap import Number, Overlap
+from anisocontact.contact.line_overlap import LineOverlap, Number
 from anisocontact.contact.slave_edges import line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches, transformed
 
@@ -83,7 +83,7 @@ class _Edges:
             [self.slave[f[pair][:, None], ends[own]], self.master[g[pair][:, None], ends[other]]],
             axis=1,
         )
-        overlap = Overlap.of(self.now[nodes])
+        overlap = LineOverlap.of(self.now[nodes])
         there = overlap.high.of - overlap.low.of > SLIVER * overlap.length.of
         kept = np.flatnonzero(there)
         overlap, nodes, places = overlap.take(kept), nodes[kept], (at[own[kept]], at[other[kept]])

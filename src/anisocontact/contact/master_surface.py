@@ -11,9 +11,9 @@ from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
-from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
 from anisocontact.contact.images import Images
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.contact.remote_nodes import NONE, RemoteNodes, node_count, owned_among
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.split import Route, Split, arranged
 
@@ -75,7 +75,7 @@ class MasterSurface:
             nodes = np.ascontiguousarray(own.nodes[order])
             all_of_it = FacetMesh(own.topology, nodes, own.flip[order], sweep)
             self.facets = all_of_it if beyond is None else beyond.whole(all_of_it)
-            self.numbers, self._far = np.arange(len(self.facets.nodes)), FarNodes(space, NONE)
+            self.numbers, self._far = np.arange(len(self.facets.nodes)), RemoteNodes(space, NONE)
 
     def gather(self, numbers: Ints) -> None:
         """Have these facets instead of those before; collective.
@@ -85,7 +85,7 @@ class MasterSurface:
         """
         nodes, flip = (self._rows.fetch(values, numbers) for values in self._table)
         found, node = np.unique(nodes, return_inverse=True)
-        self._far = FarNodes(self._space, np.concatenate([self._beside, found]))
+        self._far = RemoteNodes(self._space, np.concatenate([self._beside, found]))
         self.numbers = numbers
         first = len(self.start) + len(self._beside)
         named = (first + node.reshape(nodes.shape)).astype(np.int32)
@@ -199,7 +199,7 @@ class MasterSurface:
         return int(self.own.nodes.shape[1])
 
     def everywhere[T: np.generic](self, nodal: npt.NDArray[T]) -> npt.NDArray[T]:
-        """Values of the local nodes, then of those that were gathered, see `FarNodes`."""
+        """Values of the local nodes, then of those that were gathered, see `RemoteNodes`."""
         return self._far.everywhere(nodal)
 
     def local(self, nodal: Floats) -> Floats:

@@ -13,7 +13,7 @@ from anisocontact.contact.multipliers import (
     check,
     simultaneous,
 )
-from anisocontact.contact.nested import Nested
+from anisocontact.contact.nested_uzawa import NestedUzawa
 from anisocontact.contact.semismooth import Semismooth, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
@@ -24,7 +24,7 @@ USUAL, SOFTER, IN_CYCLES, PENALTIES = "usual", "softer", "in cycles", "penalties
 
 #: Their classes, by `Augmentation.multipliers`.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
-    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: Nested},
+    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: NestedUzawa},
     UZAWA: {USUAL: Uzawa},
 }
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact.facet_answer import ByPoints, FacetAnswer
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class PointTangent:
     """
 
     def __init__(
-        self, points: SlavePoints, nodes: Callable[[], Nodes], answer: FacetAnswer[ByPoints]
+        self, points: IntegrationPoints, nodes: Callable[[], Nodes], answer: FacetAnswer[ByPoints]
     ) -> None:
         self._points, self._nodes, self._answer = points, nodes, answer
         self._then = nodes()

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Locals
+from anisocontact.contact.integration_points import FREE, free_along
 from anisocontact.contact.master import Resting
 from anisocontact.contact.master_surface import MasterSurface
-from anisocontact.contact.points import FREE, free_along
 
 
 class PrescribedNodes:

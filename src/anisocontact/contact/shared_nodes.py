@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Locals
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 
 
 class AtSlavePoints(Protocol):
@@ -21,7 +21,7 @@ class AtSlavePoints(Protocol):
         trials: Its trials, see `Trials`, which look here in turn.
     """
 
-    slave_points: SlavePoints
+    slave_points: IntegrationPoints
     accepted: Snapshot
     trials: Any
 

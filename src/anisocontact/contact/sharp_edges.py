@@ -21,7 +21,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.beyond_cuts import BeyondCuts
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.quadrature import facet_quadrature, inward
 from anisocontact.mesh import Model
 
@@ -156,7 +156,7 @@ def _middles(model: Model, group: str) -> tuple[Floats, Floats]:
     facets, comm = model.facets(group), model.mesh.comm
     quadrature = facet_quadrature(model.space, facets, 1, model.idealisation)
     flip = inward(model.space, facets, quadrature)
-    points: Any = SlavePoints(quadrature, flip, current_area=False, comm=comm)
+    points: Any = IntegrationPoints(quadrature, flip, current_area=False, comm=comm)
     gathered = (comm.allgather(found) for found in (quadrature.reference, points.outward))
     places, normals = (np.concatenate(found) for found in gathered)
     return places, normals

@@ -23,12 +23,12 @@ from anisocontact.contact.facet_mesh import (
     isoparametric,
 )
 from anisocontact.contact.facet_pairs import largest_radius, near_facets
-from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.near_facets import NearFacets
 from anisocontact.contact.options import ContactOptions
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.remote_nodes import NONE
 from anisocontact.contact.side_of_master import Seen
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.surface_gradient import SurfaceGradient
@@ -67,7 +67,7 @@ class Sides:
 
     slave: FacetMesh
     rule: FacetRule
-    points: SlavePoints
+    points: IntegrationPoints
     gathered: MasterSurface
     surface: FacetSurface
     reach: float
@@ -229,7 +229,7 @@ class Sides:
 def _collect(
     gathered: MasterSurface,
     slave: FacetMesh,
-    points: SlavePoints,
+    points: IntegrationPoints,
     now: Floats,
     far: float,
     more: Ints,
@@ -290,7 +290,7 @@ def make_sides(
     own = facet_mesh(model.space, slave, sweep)
     degree = options.chosen_degree(model)
     rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)
-    points = nodes or SlavePoints(
+    points = nodes or IntegrationPoints(
         isoparametric(own, rule, reference), own.flip, current_area=current, comm=comm
     )
     reach = options.reach if options.reach is not None else 2.0 * points.size

@@ -22,8 +22,8 @@ from anisocontact.contact.facet_mesh import (
     outward_normals,
 )
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.near_facets import NearFacets
-from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
 from anisocontact.contact.whole_facets import WholeFacets
@@ -269,7 +269,7 @@ def _pieces(mesh: FacetMesh, whole: WholeFacets) -> Locals:
     return numbers.reshape(-1, pieces.shape[2]).astype(np.int32)
 
 
-class SlaveNodes(SlavePoints):
+class SlaveNodes(IntegrationPoints):
     """Slave nodes of one pass: one point each, with the averaged normal of the facets around it.
 
     Args:
@@ -337,7 +337,7 @@ class SlaveNodes(SlavePoints):
 
     @override
     def touching(self, now: Snapshot) -> Floats:
-        """As of `SlavePoints`; nodes at the edge of contact touch in part.
+        """As of `IntegrationPoints`; nodes at the edge of contact touch in part.
 
         Such a node is up to a third of a facet outside of the edge, or two thirds inside, and the
         nearer it is the smaller its pressure. It counts with `EDGE` times its pressure over the

@@ -8,7 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.surfaces import PROJECTION_STATUS
@@ -22,7 +22,7 @@ SHARE = 0.1379
 
 
 def check_symmetry(
-    idealisation: Idealisation, interface: Interface, points: SlavePoints, comm: Any
+    idealisation: Idealisation, interface: Interface, points: IntegrationPoints, comm: Any
 ) -> None:
     """Refuse a master that answers otherwise in another plane.
 
@@ -57,7 +57,7 @@ def check_symmetry(
 
 
 def _check_normals(
-    idealisation: Idealisation, interface: Interface, points: SlavePoints, comm: Any
+    idealisation: Idealisation, interface: Interface, points: IntegrationPoints, comm: Any
 ) -> None:
     """Refuse a surface whose normals leave the plane, which it does not cut in a line.
 
@@ -75,7 +75,7 @@ def _check_normals(
 
 
 def _tractions(
-    interface: Interface, points: SlavePoints, rotation: Floats, shift: Floats
+    interface: Interface, points: IntegrationPoints, rotation: Floats, shift: Floats
 ) -> Floats:
     """Tractions after a small slip, (n, 3); zero where there is no point of the surface below."""
     quadrature = points.quadrature

@@ -6,7 +6,7 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.contact.along_normals import Places, along_normals
+from anisocontact.contact.along_normals import NormalProjections, along_normals
 from anisocontact.contact.contact_planes import Opposite
 from anisocontact.contact.facet_mesh import node_coordinates
 from anisocontact.contact.sides import Sides
@@ -37,18 +37,18 @@ def met_along(
     return tangent_places(sides, along_normals(sides, x, normal, hit, places_of(sides, then)))
 
 
-def places_of(sides: Sides, then: Opposite) -> Places:
+def places_of(sides: Sides, then: Opposite) -> NormalProjections:
     """Places that tangents were taken at, see `tangent_places`."""
     topology = sides.master.topology
     coordinates = node_coordinates(topology, CORNERS[topology.rstrip("0123456789")])
     if not len(sides.master.nodes):
-        return Places(then.facet, np.zeros((len(then.facet), 2)), then.edge)
+        return NormalProjections(then.facet, np.zeros((len(then.facet), 2)), then.edge)
     xi = then.shape @ coordinates
     flipped = sides.master.flip[np.maximum(then.facet, 0)]  # whose coordinates change places
-    return Places(then.facet, np.where(flipped[:, None], xi[:, ::-1], xi), then.edge)
+    return NormalProjections(then.facet, np.where(flipped[:, None], xi[:, ::-1], xi), then.edge)
 
 
-def tangent_places(sides: Sides, places: Places) -> Opposite:
+def tangent_places(sides: Sides, places: NormalProjections) -> Opposite:
     """Where the tangents of the master are taken, opposite to no nodes yet.
 
     Args:

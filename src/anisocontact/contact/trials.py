@@ -10,6 +10,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.linearised import Linearised
 from anisocontact.contact.master import Answer, Master
@@ -19,7 +20,6 @@ from anisocontact.contact.multipliers import (
     AugmentedLaw,
     Multipliers,
 )
-from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
 from anisocontact.contact.supported_share import SupportedPoints
@@ -53,7 +53,7 @@ class Trials:
     """
 
     def __init__(
-        self, points: SlavePoints, master: Master, law: Any, state: State, comm: Any
+        self, points: IntegrationPoints, master: Master, law: Any, state: State, comm: Any
     ) -> None:
         self._points = points
         self.master, self.interface, self.start, self._comm = master, law, state, comm

@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Ints, Locals
 from anisocontact.contact.beyond_cuts import BeyondCuts, Led
 from anisocontact.contact.facet_mesh import FacetMesh
-from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
+from anisocontact.contact.remote_nodes import NONE, RemoteNodes, node_count
 from anisocontact.mesh.split import Route, Split
 
 
@@ -29,8 +29,8 @@ class WholeFacets:
     """
 
     mesh: FacetMesh
-    far: FarNodes
-    others: FarNodes | Led
+    far: RemoteNodes
+    others: RemoteNodes | Led
     keys: Ints
     nodes: Ints | Locals
     beside: Ints | Locals
@@ -63,17 +63,17 @@ def around_own_nodes(
     named = np.where(local < 0, node_count(space) + np.searchsorted(far, nodes), local)
     known, first = np.unique(named, return_index=True)
     own = known < index_map.size_local
-    others = FarNodes(space, nodes.reshape(-1)[first[~own]])
+    others = RemoteNodes(space, nodes.reshape(-1)[first[~own]])
     found = FacetMesh(mesh.topology, named.astype(np.int32), flip[order])
     return WholeFacets(
-        found, FarNodes(space, far), others, keys[order], known[own], known[~own], len(order)
+        found, RemoteNodes(space, far), others, keys[order], known[own], known[~own], len(order)
     )
 
 
 def _on_one_process(
     space: Any, mesh: FacetMesh, keys: Ints, beyond: BeyondCuts | None
 ) -> WholeFacets:
-    none, drawn = FarNodes(space, NONE), len(mesh.nodes)
+    none, drawn = RemoteNodes(space, NONE), len(mesh.nodes)
     nodes = np.unique(mesh.nodes if mesh.sweep is None else mesh.sweep.edges(mesh.nodes))
     if beyond is None:
         return WholeFacets(mesh, none, none, keys, nodes, NONE, drawn)

@@ -19,7 +19,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import GREY
-from anisocontact.results.cut import Cut, cut_of
+from anisocontact.results.section_plane import SectionPlane, section_of
 
 if TYPE_CHECKING:
     from anisocontact.results.scene import Scene
@@ -101,7 +101,7 @@ def magnification(grid: Solid) -> float:
 
 
 @dataclass(frozen=True)
-class Surfaces:
+class BodySurfaces:
     """Surfaces of the bodies as triangles.
 
     Args:
@@ -114,21 +114,21 @@ class Surfaces:
     skin: Solid
     edges: list[Solid]
     before: Solid
-    cut: Cut | None
+    cut: SectionPlane | None
 
 
-def surfaces(grid: Solid, scale: float, shown: Shown) -> Surfaces:
+def surfaces(grid: Solid, scale: float, shown: Shown) -> BodySurfaces:
     """Surfaces of bodies whose displacement is magnified, with what is shown of them."""
     values = shown.value(grid.values(shown.array))
     grid = grid.with_values("value", values)
     before = grid.skin()
-    cut = cut_of(grid.points, values) if shown.cut and not in_plane(before) else None
+    cut = section_of(grid.points, values) if shown.cut and not in_plane(before) else None
     if cut is None:
         shapes = [before, before.edges()]
     else:
         shapes = [grid.behind(cut).skin(), before.edges().behind(cut), before.rim(cut)]
     skin, *edges = [one.moved("displacement", scale) for one in shapes]
-    return Surfaces(skin, edges, before, cut)
+    return BodySurfaces(skin, edges, before, cut)
 
 
 def in_plane(before: Solid) -> bool:
@@ -136,7 +136,7 @@ def in_plane(before: Solid) -> bool:
     return bool(before.bounds[4] == before.bounds[5])
 
 
-def caption(scale: float, cut: Cut | None) -> str:
+def caption(scale: float, cut: SectionPlane | None) -> str:
     """Heading of the picture: how much the displacement is magnified, and what is left out."""
     times = "true to scale" if scale == 1.0 else f"displacement times {scale:g}"
     lines = [f"{times}; grey: before"]

@@ -22,7 +22,7 @@ from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.results.cut import Cut
+from anisocontact.results.section_plane import SectionPlane
 
 #: Angle between facets from which on an edge is seen, degrees.
 SHARP = 30.0
@@ -81,14 +81,14 @@ class Solid:
         lines.ColoringOff()
         return _through(lines, self)
 
-    def behind(self, where: Cut) -> Solid:
+    def behind(self, where: SectionPlane) -> Solid:
         """What is not in front of a cut."""
         lines = isinstance(self.data, vtkPolyData)
         clip: Any = vtkClipPolyData() if lines else vtkTableBasedClipDataSet()
         clip.SetClipFunction(_plane(where))
         return _through(clip, self)
 
-    def rim(self, where: Cut) -> Solid:
+    def rim(self, where: SectionPlane) -> Solid:
         """Where a cut goes through a skin, as lines."""
         cutter = vtkCutter()
         cutter.SetCutFunction(_plane(where))
@@ -122,7 +122,7 @@ def one_cell() -> Solid:
     return Solid(grid)
 
 
-def _plane(cut: Cut) -> vtkPlane:
+def _plane(cut: SectionPlane) -> vtkPlane:
     plane = vtkPlane()
     plane.SetOrigin(*(cut.place * (i == cut.axis) for i in range(3)))
     plane.SetNormal(*cut.normal)

@@ -21,6 +21,7 @@ from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
+from anisocontact.results.master_patches import MasterPatches
 from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.output_options import Labels, OutputOptions
 from anisocontact.results.paraview import BodyGrid, slave_points
@@ -28,7 +29,6 @@ from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
 from anisocontact.results.report_process import Reporter, report_here
 from anisocontact.results.snapshot import Observer, exact_laws, laws
-from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
@@ -118,7 +118,7 @@ class Writer:
     def _now(self, quantities: Sequence[str]) -> dict[str, Callable[[], DataSet | None]]:
         """What the files for ParaView have of the state of now, by sort of fields."""
         contacts = self._problem.contacts
-        surfaces = Surfaces(contacts, self._problem.model.mesh.comm, quantities)
+        surfaces = MasterPatches(contacts, self._problem.model.mesh.comm, quantities)
         return {
             "fields": self._bodies.grid,
             "contact": lambda: slave_points(contacts, quantities),

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
-from anisocontact.results.cut import Cut
 from anisocontact.results.deformed import (
     FRONT,
     SHOWN,
@@ -30,6 +29,7 @@ from anisocontact.results.deformed import (
     round_box,
     surfaces,
 )
+from anisocontact.results.section_plane import SectionPlane
 
 if TYPE_CHECKING:
     from anisocontact.results.solids import Solid
@@ -164,7 +164,7 @@ def _by_matplotlib(grid: Solid, shown: Shown, picture: Path, unit: str, length: 
     save(figure, picture)
 
 
-def _angles(cut: Cut | None) -> tuple[float, float]:
+def _angles(cut: SectionPlane | None) -> tuple[float, float]:
     """Elevation and azimuth of who looks at the bodies, degrees."""
     x, y, _ = FRONT if cut is None else cut.towards_viewer
     return 25.0, math.degrees(math.atan2(y, x))

@@ -72,7 +72,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Attempt:
     """One attempt.
 
     Attributes:
@@ -103,14 +103,14 @@ class Attempts:
     accepted state with full steps: a line search stops in front of a jump of the law. Both are one
     where nothing is extrapolated and pressures of cells follow corrections in full steps. Where
     adhesion is stiff one with compliant layers comes between them, where penalties are one with
-    multipliers before them, see `Continuation`. Where the
-    status of points alternated, a further one takes a share of each correction: half as much as
-    before where it still alternates, twice as much where it does not. Where that does not help
-    either and the part is small, the last one lets the bodies flow, see `Flow`. Where a part is
-    tiny, both are tried whatever was in the way. Where multipliers are not required and a cut did
-    not lead to them, penalties come before these last ones. Where contact may
-    hold free bodies without springs, an attempt without them comes before all these. Multipliers
-    that follow every correction have ways of their own, see `_following`.
+    multipliers before them, see `Continuation`. Where the status of points alternated, a further
+    one takes a share of each correction: half as much as before where it still alternates, twice as
+    much where it does not. Where that does not help either and the part is small, the last one lets
+    the bodies flow, see `ViscousFlow`. Where a part is tiny, both are tried whatever was in the
+    way. Where multipliers are not required and a cut did not lead to them, penalties come before
+    these last ones. Where contact may hold free bodies without springs, an attempt without them
+    comes before all these. Multipliers that follow every correction have ways of their own, see
+    `_following`.
 
     Args:
         problem: The problem.
@@ -160,7 +160,7 @@ class Attempts:
         overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
         found: list[Culprit] = []
         seen: set[str] = set()
-        searching, full = _Way(first, ratio, full_steps=False), _Way(last)
+        searching, full = _Attempt(first, ratio, full_steps=False), _Attempt(last)
         both = self._apart(searching, full)
         relaxed = [replace(way, multipliers=PENALTIES) for way in both]
         if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
@@ -191,7 +191,7 @@ class Attempts:
         final, failed_at = self._final or hopeless, self._failed
         return Outcome(result, tuple(found), final, hint, failed_at, refused=self._final)
 
-    def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
+    def _ways(self, searching: _Attempt, full: _Attempt, softer: bool) -> list[_Attempt]:
         trusts = self._problem.stabilisation.trusts
         stiff, layered = self._continuation.stiff(), replace(full, layered=True)
         if self._problem.contact_term.simultaneous:
@@ -206,11 +206,11 @@ class Attempts:
             ways.insert(2 if trusts else 1, layered)
         return ways
 
-    def _apart(self, searching: _Way, full: _Way) -> list[_Way]:
+    def _apart(self, searching: _Attempt, full: _Attempt) -> list[_Attempt]:
         """Both ways; one where there is neither extrapolation nor a line search between them."""
         return [searching, full] if searching.ratio or not self._problem.in_full else [full]
 
-    def _last_resorts(self, failed: _Way, flows: bool) -> list[_Way]:
+    def _last_resorts(self, failed: _Attempt, flows: bool) -> list[_Attempt]:
         """What is left to be tried where the status of points alternates, or parts are tiny."""
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
@@ -218,10 +218,10 @@ class Attempts:
             # bodies that flow from one contact to another find multipliers with smaller penalties
             follows = SOFTER in self._problem.contact_term.ways
             by = SOFTER if follows else failed.multipliers
-            return [_Way(failed.start, flowing=True, multipliers=by)]
+            return [_Attempt(failed.start, flowing=True, multipliers=by)]
         return []
 
-    def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:
+    def _attempt(self, way: _Attempt) -> tuple[NewtonResult, list[Culprit]]:
         problem = self._problem
         self._watch.clear()
         self._share, self._final, self._turns.objects = 1.0, False, False
@@ -246,7 +246,7 @@ class Attempts:
                 self._continuation.end()
                 problem.roll_back()
 
-    def _correct(self, way: _Way, x: Vec) -> NewtonResult:
+    def _correct(self, way: _Attempt, x: Vec) -> NewtonResult:
         """Newton's method on one of the ways; `x` is its start, and its last iterate."""
         problem = self._problem
         if way.flowing:
@@ -258,7 +258,7 @@ class Attempts:
         damping = self._damping if way.damped else None
         return self._newton.solve(x, way.full_steps, damping)
 
-    def _objection(self, way: _Way, x: Vec) -> Refusal | None:
+    def _objection(self, way: _Attempt, x: Vec) -> Refusal | None:
         """Why a state in equilibrium is not accepted, if it is not."""
         refusal = refused(self._problem, x)
         if refusal is None and not way.flowing:
@@ -285,7 +285,9 @@ class Attempts:
         return self._share
 
 
-def _following(first: _Way, last: _Way, cycles: bool, trusts: bool, softer: bool) -> list[_Way]:
+def _following(
+    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, softer: bool
+) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
     Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import facet_size
-from anisocontact.contact.held_feet import facet_of
+from anisocontact.contact.held_points import facet_of
 from anisocontact.interface import FAILURE, STATUS
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.status_watch import StatusWatch

@@ -11,7 +11,7 @@ from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.bulk import small_strain
 from anisocontact.solver.system.assembly import TrialState
 from anisocontact.solver.system.cells import DeformedCells
-from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.parts import ProblemParts
 
 
 class Configuration:
@@ -21,7 +21,7 @@ class Configuration:
         u: Displacement, a DOLFINx function.
     """
 
-    def __init__(self, parts: Parts) -> None:
+    def __init__(self, parts: ProblemParts) -> None:
         self._parts = parts
         self.u: Any = fem.Function(parts.model.space, name="displacement")
         finite = [name for name, material in parts.materials.items() if not small_strain(material)]

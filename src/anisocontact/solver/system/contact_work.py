@@ -28,7 +28,7 @@ from anisocontact.base.fenicsx import MPI
 from anisocontact.base.statuses import OPEN
 from anisocontact.contact import Contact
 from anisocontact.solver.system.imbalance import LARGE
-from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.parts import ProblemParts
 
 #: Share of the touching points that have to begin or end contact or slip.
 CHANGED = 0.05
@@ -96,7 +96,7 @@ class ContactWork:
         parts: Parts of the problem; nothing is added where a contact cannot be asked again.
     """
 
-    def __init__(self, parts: Parts) -> None:
+    def __init__(self, parts: ProblemParts) -> None:
         self._parts, self._contacts, self._rigid = parts, parts.contacts, parts.rigid
         self._comm: Any = parts.layout.comm
         self._places: list[_WayPoint] = []

@@ -9,9 +9,9 @@ import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.remote_nodes import globally
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.split import Route, Split
 

@@ -57,7 +57,7 @@ class Connections:
 
 
 @dataclass(frozen=True)
-class Parts:
+class ProblemParts:
     """Parts of one system of equations.
 
     Attributes:
@@ -97,7 +97,7 @@ def make_parts(
     contacts: Sequence[Contact],
     connections: Connections,
     stabilised: bool,
-) -> Parts:
+) -> ProblemParts:
     """Parts of a problem, from the arguments of `Problem`.
 
     Raises:
@@ -120,7 +120,7 @@ def make_parts(
     aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, links)
     external = ExternalTerms(holders=[attached], loads=[loads], aids=[aid])
     assembly = Assembly(layout, bodies, Contacts(contacts), supports, constraints, rigid, external)
-    return Parts(
+    return ProblemParts(
         model=model,
         materials=dict(materials),
         contacts=list(contacts),

@@ -9,10 +9,10 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.material_warnings import doubtful_materials
-from anisocontact.contact.far_nodes import with_ghosts
+from anisocontact.contact.remote_nodes import with_ghosts
 from anisocontact.mesh.connected_components import unjoined_bodies
 from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
-from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.parts import ProblemParts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, along_axes
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
@@ -21,7 +21,9 @@ from anisocontact.solver.terms.step import AXES, Step, check_courses
 from anisocontact.solver.terms.supports import Supports
 
 
-def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again: bool) -> None:
+def begin_step(
+    parts: ProblemParts, step: Step, start: Floats, reaction: Floats, again: bool
+) -> None:
     """Take over the loads of a step; what is no longer prescribed goes on from its reaction.
 
     Args:
@@ -53,7 +55,7 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
 
 
-def _begin_contacts(parts: Parts, held: Sequence[Supported], count: int) -> None:
+def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) -> None:
     """Let contacts know along which directions nodes are prescribed, and along which they rest."""
     of_faces = along_axes(parts.rigid.prescribed_of_faces())
     fixed = supported_space(count, [*held, *of_faces])
@@ -71,7 +73,7 @@ def _begin_contacts(parts: Parts, held: Sequence[Supported], count: int) -> None
 
 
 def _rehearsed(
-    parts: Parts, steps: Sequence[Step]
+    parts: ProblemParts, steps: Sequence[Step]
 ) -> Iterator[tuple[Step, Supports, Guides, Loads]]:
     """Supports, guides and loads of every step, begun without solving."""
     model = parts.model
@@ -85,7 +87,7 @@ def _rehearsed(
         yield step, supports, guides, loads
 
 
-def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
+def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
     """Go through the supports and loads of all steps without solving.
 
     Returns:
@@ -116,7 +118,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> list[str]:
     return doubtful + _doubtful(parts)
 
 
-def _doubtful(parts: Parts) -> list[str]:
+def _doubtful(parts: ProblemParts) -> list[str]:
     """What is doubtful whatever the steps ask for, a line each; collective."""
     ties, materials = parts.assembly.constraints.ties, parts.materials
     of_ties = (
@@ -129,19 +131,19 @@ def _doubtful(parts: Parts) -> list[str]:
     return of_ties + bodies + unjoined_bodies(parts.model, of_contacts + tied)
 
 
-def _cut_faces(parts: Parts) -> list[SupportedFrame]:
+def _cut_faces(parts: ProblemParts) -> list[SupportedFrame]:
     """Cut faces of sectors."""
     ties = parts.assembly.constraints.ties
     return [] if ties is None else ties.sectors.frames()
 
 
-def _on_bodies(parts: Parts) -> Ints:
+def _on_bodies(parts: ProblemParts) -> Ints:
     """Unknowns that follow rigid bodies, local numbers."""
     faces = parts.rigid.faces
     return np.zeros(0, dtype=np.int64) if faces is None else faces.dependents
 
 
-def _check_motions(parts: Parts, step: Step) -> None:
+def _check_motions(parts: ProblemParts, step: Step) -> None:
     """Refuse rigid motions that make a plane, or a body of revolution, something else."""
     idealisation = parts.model.idealisation
     with_faces = {body.name for body, faces in parts.rigid.coupled.items() if faces}
@@ -169,7 +171,7 @@ def _check_motions(parts: Parts, step: Step) -> None:
             raise InputError(f"a motion {wrong[0]} given, {said}", field)
 
 
-def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
+def contact_must_hold(parts: ProblemParts, steps: Sequence[Step]) -> bool:
     """Whether contact alone has to hold a body without springs in one of the steps.
 
     Raises:

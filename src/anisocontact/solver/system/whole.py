@@ -10,7 +10,7 @@ from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.interior import with_interior
-from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.parts import ProblemParts
 from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 
@@ -23,7 +23,7 @@ class Whole:
     def __init__(
         self,
         system: AssembledSystem,
-        parts: Parts,
+        parts: ProblemParts,
         bodies: Configuration,
         accepted: AcceptedState,
     ) -> None:

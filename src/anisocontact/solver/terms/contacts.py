@@ -10,8 +10,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import Mat
 from anisocontact.contact import Contact
-from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.contact.remote_nodes import globally
 from anisocontact.contact.trials import Mark
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term

@@ -23,12 +23,12 @@ from anisocontact.contact import Contact, NotHeldError
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
-from anisocontact.solver.terms.flow import Flow
 from anisocontact.solver.terms.free_body import FreeBody
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 from anisocontact.solver.terms.unsupported_bodies import UnsupportedBodies
+from anisocontact.solver.terms.viscous_flow import ViscousFlow
 
 #: Force of the springs over the forces at work that an accepted state may have.
 SHARE = 1e-7
@@ -79,7 +79,7 @@ class Stabilisation(Term):
         self.energy = self.released = 0.0
         self.careful = self.landed = False
         self.notes: list[str] = []
-        self.flow = Flow(model, scale)
+        self.flow = ViscousFlow(model, scale)
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm

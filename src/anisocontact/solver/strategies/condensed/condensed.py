@@ -12,7 +12,7 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.strategies.condensed.parts import Condensation
-from anisocontact.solver.strategies.condensed.patterns import InteriorState, Probe
+from anisocontact.solver.strategies.condensed.patterns import InteriorState, WorkForces
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
 from anisocontact.solver.system.problem import Problem
@@ -59,7 +59,7 @@ class Condensed:
         self._forces: Floats = np.zeros(n)
         self._stale = False
         self._held: dict[tuple[str, int], int] = {}
-        self._means: dict[str, tuple[Probe, Floats]] = {}
+        self._means: dict[str, tuple[WorkForces, Floats]] = {}
         self._whole: tuple[InteriorState, Floats] | None = None
         problem.reduce_by(self)
         if kept:
@@ -269,7 +269,7 @@ class Condensed:
         found = free + supports.T @ at.array_r[self.system.bulk.prescribed]
         return np.asarray(found.reshape(3, *weights.shape[1:]))
 
-    def _probe(self, weights: Floats) -> tuple[Probe, Floats]:
+    def _probe(self, weights: Floats) -> tuple[WorkForces, Floats]:
         """Weights as forces on the free unknowns, and those of the prescribed ones."""
         each = np.zeros((len(weights), 3, 3, weights[0].size))
         for axis in range(3):

@@ -9,8 +9,8 @@ import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap, OppositeNodes
 from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse, follow
-from anisocontact.solver.strategies.condensed.places import Opposite, Places
 
 Block = tuple[slice, Floats]
 
@@ -59,10 +59,10 @@ class ContactTangent:
         self.scale = max((float(np.abs(np.diagonal(b)).max()) for _, b in blocks), default=1.0)
         self._blocks = blocks
         self._scaled: list[tuple[slice, Reals]] = []
-        self._places = Places(number if spread is None else np.arange(len(number)))
+        self._places = AssemblyMap(number if spread is None else np.arange(len(number)))
         self._contact = scipy.sparse.csr_array((count, count))
         self._known: tuple[Floats, Floats] | None = None
-        self._beside: Sequence[Opposite] = ()
+        self._beside: Sequence[OppositeNodes] = ()
         self._slaves = np.zeros(count, dtype=np.bool_)
         self.basis: Sparse | None = None
         self.shares = self.summed = self._contact.astype(self.kind)
@@ -73,8 +73,8 @@ class ContactTangent:
     def take(
         self,
         couplings: Sequence[Couplings],
-        opposite: Sequence[Opposite] = (),
-        beside: Sequence[Opposite] = (),
+        opposite: Sequence[OppositeNodes] = (),
+        beside: Sequence[OppositeNodes] = (),
     ) -> None:
         """Replace the tangent of the contacts.
 

@@ -42,7 +42,7 @@ class Eliminated(Protocol):
         ...
 
 
-class Way(Protocol):
+class Elimination(Protocol):
     """Who eliminates an interior."""
 
     def __call__(self, matrix: scipy.sparse.csr_array, border: Ints, /) -> Eliminated:

@@ -95,7 +95,7 @@ class ForcePattern:
 
 
 @dataclass
-class Probe:
+class WorkForces:
     """Forces whose work in many states is asked for.
 
     Attributes:
@@ -232,12 +232,12 @@ class Patterns:
         on_contact = forces[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
         return ForcePattern(forces, answer, on_contact)
 
-    def probe(self, forces: Floats) -> Probe:
+    def probe(self, forces: Floats) -> WorkForces:
         """Forces, (n, k), zero where prescribed, for `work_of`."""
         nothing = np.zeros((forces.shape[1], 0))
-        return Probe(self.respond(forces), nothing, nothing)
+        return WorkForces(self.respond(forces), nothing, nothing)
 
-    def work_of(self, probe: Probe, state: InteriorState) -> Floats:
+    def work_of(self, probe: WorkForces, state: InteriorState) -> Floats:
         """Work `f . u` of each force of a probe in a state, (k,)."""
         a, b = self._padded(state)
         own = probe.response

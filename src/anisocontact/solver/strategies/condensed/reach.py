@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.course import Course
 from anisocontact.contact import Contact
-from anisocontact.contact.far_nodes import all_marked, marked_nodes, node_count
+from anisocontact.contact.remote_nodes import all_marked, marked_nodes, node_count
 from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays

@@ -9,9 +9,9 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.contact.far_nodes import globally
+from anisocontact.contact.remote_nodes import globally
+from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap
 from anisocontact.solver.strategies.condensed.front import Sparse, whole
-from anisocontact.solver.strategies.condensed.places import Places
 from anisocontact.solver.system.problem import Problem
 
 
@@ -32,7 +32,7 @@ class Touched:
     def __init__(self, problem: Problem, unknowns: Ints | None = None) -> None:
         self._problem, self._comm = problem, problem.comm
         self._space = problem.layout.unknowns.nodes
-        self._places = Places(np.arange(problem.unknowns))
+        self._places = AssemblyMap(np.arange(problem.unknowns))
         self.unknowns: Ints = self._select() if unknowns is None else unknowns
 
     def tangent(self) -> Sparse:

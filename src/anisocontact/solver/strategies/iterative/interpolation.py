@@ -48,7 +48,7 @@ _NONE = np.zeros(0, dtype=np.int64)
 NOTHING = Aggregates(_NONE, _NONE, np.zeros(0), 0, 0)
 
 
-class Parts(Protocol):
+class LevelUnknowns(Protocol):
     """Where the unknowns of a level are."""
 
     @property
@@ -64,7 +64,7 @@ class Parts(Protocol):
         """Unknowns with a row of their own, local numbers."""
 
 
-def tentative(found: Aggregates, parts: Parts, matrix: Mat) -> Mat:
+def tentative(found: Aggregates, parts: LevelUnknowns, matrix: Mat) -> Mat:
     """T: from motions of aggregates and the patch to the unknowns of a level, without smoothing.
 
     Columns of a process are its aggregates, then its patch. Given unknowns have empty rows.
@@ -91,7 +91,7 @@ def tentative(found: Aggregates, parts: Parts, matrix: Mat) -> Mat:
     return sparse(last - first, found.own + len(patch), comm, at, values[kept])
 
 
-def smoothed(rough: Mat, matrix: Mat, inside: Mat, parts: Parts) -> Mat:
+def smoothed(rough: Mat, matrix: Mat, inside: Mat, parts: LevelUnknowns) -> Mat:
     """`P = (1 - w M A) T` from a tentative interpolation T, which is taken over.
 
     M is the inverse diagonal in the interior and zero elsewhere, w is 4/3 over the largest
@@ -118,7 +118,7 @@ def smoothed(rough: Mat, matrix: Mat, inside: Mat, parts: Parts) -> Mat:
     return _without_zeros(rough)
 
 
-def _beside(matrix: Mat, parts: Parts) -> Ints:
+def _beside(matrix: Mat, parts: LevelUnknowns) -> Ints:
     """Unknowns of the interior that the patch is coupled with, local numbers in it."""
     block = matrix.createSubMatrix(parts.interior, parts.patch)
     starts, _, values = block.getValuesCSR()

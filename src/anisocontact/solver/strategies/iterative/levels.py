@@ -17,7 +17,7 @@ from anisocontact.solver.strategies.iterative.interpolation import (
     smoothed,
     tentative,
 )
-from anisocontact.solver.strategies.iterative.nested import Below
+from anisocontact.solver.strategies.iterative.multilevel_inverse import Below
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.iterative.single_rows import (
     InteriorRows,

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.contact.far_nodes import globally
+from anisocontact.contact.remote_nodes import globally
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step

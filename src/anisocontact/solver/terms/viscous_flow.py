@@ -38,7 +38,7 @@ SLOW = 0.1
 MOST_STEPS = 200
 
 
-class Flow(Term):
+class ViscousFlow(Term):
     """Viscous flow of all bodies from the accepted state to an equilibrium.
 
     Args:

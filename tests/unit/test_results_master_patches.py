@@ -9,7 +9,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.results.surfaces import POINTS, Surfaces
+from anisocontact.results.master_patches import POINTS, MasterPatches
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.surfaces import make_surface
 
@@ -39,7 +39,7 @@ def patch(fe, shape, body=None, **friction):
         Friction(**({"coefficients": (0.1, 0.1)} | friction)),
     )
     contact = Contact(block.model, "block.bottom", MovingSurface(law, body), mortar=False)
-    return contact, Surfaces([block.contact, contact], block.model.mesh.comm)
+    return contact, MasterPatches([block.contact, contact], block.model.mesh.comm)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -81,4 +81,4 @@ def test_a_patch_moves_with_its_body(fe):
 
 def test_no_analytic_master(fe):
     block = fe.block(fe.interface())
-    assert Surfaces([], block.model.mesh.comm).mesh() is None
+    assert MasterPatches([], block.model.mesh.comm).mesh() is None

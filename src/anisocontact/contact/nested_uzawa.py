@@ -22,7 +22,7 @@ from anisocontact.interface.augmentation import Augmentation
 TRIED_AFTER = (1, 3, 6)
 
 
-class Nested(Uzawa):
+class NestedUzawa(Uzawa):
     """Cycles of `Uzawa` that end in `Semismooth`, made like all `Multipliers`.
 
     Nothing of them lasts: an increment that was solved like this leaves no level of penalties.

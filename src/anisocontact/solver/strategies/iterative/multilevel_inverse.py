@@ -21,14 +21,14 @@ from anisocontact.solver.strategies.iterative.interpolation import (
 
 @dataclass(frozen=True)
 class Columns:
-    """Where the unknowns of a coarse level are, see `Parts`."""
+    """Where the unknowns of a coarse level are, see `LevelUnknowns`."""
 
     interior: PETSc.IS
     patch: PETSc.IS
     given: Ints
 
 
-class Nested:
+class MultilevelInverse:
     """Approximate inverse of the matrix of a coarse level by one cycle from zero.
 
     Args:
@@ -126,7 +126,7 @@ class Below:
             PETSc.IS().createStride(self.patch, first + own, 1, comm),
             np.zeros(0, dtype=np.int64),
         )
-        return Nested(
+        return MultilevelInverse(
             matrix,
             columns,
             tentative(levels[1], columns, matrix),

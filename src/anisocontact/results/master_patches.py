@@ -20,7 +20,7 @@ POINTS = 33
 MARGIN = 0.5
 
 
-class Surfaces:
+class MasterPatches:
     """Patches of the analytic masters of a problem.
 
     A coordinate that ends or closes is shown whole, an endless one around the feet of the slave

@@ -13,7 +13,7 @@ from anisocontact.mesh.split import Route, Split
 NONE: Ints = np.zeros(0, dtype=np.int64)
 
 
-class FarNodes:
+class RemoteNodes:
     """Nodes of the whole mesh, numbered after the local ones; collective, as are its exchanges.
 
     Args:
@@ -75,7 +75,7 @@ def node_count(space: Any) -> int:
 
 
 def globally(nodes: npt.NDArray[Any], space: Any) -> Ints:
-    """Numbers in the whole mesh of nodes that `FarNodes.coupled` has named.
+    """Numbers in the whole mesh of nodes that `RemoteNodes.coupled` has named.
 
     Args:
         nodes: The names, of any shape.
@@ -108,7 +108,7 @@ def marked_nodes(space: Any, named: Locals) -> Flags:
 
     Args:
         space: Vector Lagrange space of the displacement.
-        named: Names of `FarNodes.coupled`, of any shape.
+        named: Names of `RemoteNodes.coupled`, of any shape.
 
     Returns:
         Flags of the local nodes with ghosts, (local nodes,).
@@ -125,7 +125,7 @@ def all_marked(space: Any, flags: Flags, named: Locals) -> bool:
     Args:
         space: Vector Lagrange space of the displacement.
         flags: Of the local nodes, (local nodes,).
-        named: Names of `FarNodes.coupled`, (n,).
+        named: Names of `RemoteNodes.coupled`, (n,).
     """
     comm, owned = space.mesh.comm, space.dofmap.index_map.size_local
     found = Split(comm, owned).fetch(flags[:owned], globally(named, space))

@@ -23,7 +23,7 @@ BEYOND = 0.1
 MOST, ENOUGH = 12, 1e-14
 
 
-class HeldFeet:
+class HeldPoints:
     """Which slave points are held, and which of them have been let go again.
 
     A held point that has come to rest beside its facet is let go once: many that have hopped on

@@ -17,7 +17,7 @@ _NOTHING = 1e-9
 
 
 @dataclass(frozen=True)
-class Cut:
+class SectionPlane:
     """A plane across an axis, in front of which bodies are left out.
 
     Args:
@@ -54,7 +54,7 @@ class Cut:
         return f"cut open at {where}, {seen}; what is in front is left out"
 
 
-def cut_of(points: Floats, values: Floats) -> Cut | None:
+def section_of(points: Floats, values: Floats) -> SectionPlane | None:
     """The cut through the largest value that leaves enough of the bodies to look at.
 
     Args:
@@ -73,4 +73,4 @@ def cut_of(points: Floats, values: Floats) -> Cut | None:
     if not opens and side < 0.0:
         return None
     place = float(there[axis])
-    return Cut(axis, place if abs(place) > rounding else 0.0, side, opens)
+    return SectionPlane(axis, place if abs(place) > rounding else 0.0, side, opens)

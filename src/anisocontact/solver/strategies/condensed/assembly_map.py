@@ -12,10 +12,10 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.quadrature import Couplings
 
 #: Slave nodes, master nodes and their shares, as of `Contacts.opposite`.
-Opposite = tuple[Locals | Ints, Locals | Ints, Floats]
+OppositeNodes = tuple[Locals | Ints, Locals | Ints, Floats]
 
 
-class Places:
+class AssemblyMap:
     """Where couplings of nodes go in a matrix of the contact unknowns.
 
     They are found once for couplings of the same nodes, which most iterations have.
@@ -47,7 +47,7 @@ class Places:
         return scipy.sparse.csr_array((sums.ravel()[number], columns, begin), shape=(size, size))
 
     def shares(
-        self, opposite: Sequence[Opposite], size: int
+        self, opposite: Sequence[OppositeNodes], size: int
     ) -> tuple[scipy.sparse.csr_array, Flags]:
         """How unknowns of slave nodes follow those of what is opposite to them.
 
@@ -70,7 +70,7 @@ class Places:
         parts = (found.data[~again], (found.row[~again], found.col[~again]))
         return scipy.sparse.csr_array(parts, shape=(size, size)), slaves
 
-    def following(self, opposite: Sequence[Opposite], size: int) -> scipy.sparse.csr_array:
+    def following(self, opposite: Sequence[OppositeNodes], size: int) -> scipy.sparse.csr_array:
         """Shares of unknowns in those of nodes that follow them, single precision, (size, size)."""
         if not opposite:
             return scipy.sparse.csr_array((size, size), dtype=np.float32)

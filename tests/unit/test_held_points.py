@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.contact import Contact
-from anisocontact.contact.held_feet import BEYOND, facet_of
+from anisocontact.contact.held_points import BEYOND, facet_of
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box

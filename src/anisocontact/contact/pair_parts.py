@@ -18,9 +18,9 @@ from anisocontact.contact.contact_pair import PairParts
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
 from anisocontact.contact.field_axes import off_axes
 from anisocontact.contact.images import Images
+from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.penalty import facet_size
-from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
 from anisocontact.contact.quadrature import facet_quadrature, inward
 from anisocontact.contact.sharp_edges import Towards, towards_facets, towards_itself
@@ -78,7 +78,7 @@ def before_this(
     return MovingSurface(surface, before.get("body")), mortar
 
 
-def parts_of(
+def make_pair_parts(
     model: Model,
     slave: str,
     master: str | SurfaceMaster | None,
@@ -115,10 +115,10 @@ def _on_surface(
         order = _order(model, facets)
         nodes = _slave_nodes(model, facets, current, SlaveEdges.in_plane, order=order)
         interface = without_poles(interface, nodes.quadrature.reference, comm)
-        points: SlavePoints = nodes
+        points: IntegrationPoints = nodes
     else:
         flip = inward(model.space, facets, quadrature)
-        points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
+        points = IntegrationPoints(quadrature, flip, current_area=current, comm=comm)
     if model.idealisation.dim == 3:
         interface = off_axes(interface, points.quadrature.reference, points.size, comm)
     check_symmetry(model.idealisation, interface, points, comm)

@@ -18,7 +18,7 @@ from anisocontact.surfaces import FacetSets
 FREE = 0.1
 
 
-class SlavePoints:
+class IntegrationPoints:
     """Integration points of the slave facets of one pass.
 
     Args:
