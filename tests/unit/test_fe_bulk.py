@@ -44,6 +44,23 @@ def test_bad_parameters_are_one_line(parameters, words):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("lists", "said"),
+    [
+        ({"g": [], "tau": [1.0]}, r"a.g: 0 shares given, 1 needed"),
+        ({"g": [], "tau": []}, r"a.tau: \[\] given, one relaxation time or more is needed"),
+        ({"g": [0.2], "tau": [1.0], "k": [0.1, 0.1]}, r"a.k: 2 shares given, 1 needed"),
+    ],
+)
+def test_shares_that_relax_are_as_many_as_their_times(lists, said):
+    """Requirement: no list is taken for zeros but `k`, which may be left out: nothing would relax."""
+    from anisocontact.bulk import make_material
+
+    assert make_material("viscoelastic", E=1.0, nu=0.3, g=[0.0], tau=[1.0], k=[0.1])
+    with pytest.raises(InputError, match=said):
+        make_material("viscoelastic", field="a", E=1.0, nu=0.3, **lists)
+
+
 def test_unknown_material_suggests_the_near_one():
     """Requirement: a misspelt name gets the near one."""
     from anisocontact.bulk import make_material

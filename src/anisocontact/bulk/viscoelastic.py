@@ -83,7 +83,14 @@ class Viscoelastic(ElasticVolume, Isotropic):
     ) -> None:
         super().__init__(E=E, nu=nu, g=g, tau=tau, k=k, strain=strain, field=field)
         self._tau = np.array(self._given["tau"])
-        shares = self._shares("g", field), self._shares("k", field)
+        if not self._tau.size:
+            place = f"{field}.tau" if field else "tau"
+            raise InputError("[] given, one relaxation time or more is needed", place)
+        no_shares = [0.0] * self._tau.size
+        shares = (
+            self._shares("g", self._given["g"], field),
+            self._shares("k", self._given["k"] or no_shares, field),
+        )
         self._branches = [
             2.0 * self.shear * in_shear * (_SYMMETRIC - _TRACE)
             + 3.0 * self.bulk_modulus * in_volume * _TRACE
@@ -95,8 +102,8 @@ class Viscoelastic(ElasticVolume, Isotropic):
         self.strain = tuple(STRAINS)[int(self._given["strain"][0])]
         self.history = {"strain": (3, 3), "elastic_strain": (self._tau.size, 3, 3)}
 
-    def _shares(self, name: str, field: str) -> Floats:
-        shares = np.array(self._given[name] or np.zeros(self._tau.size))
+    def _shares(self, name: str, given: Sequence[float], field: str) -> Floats:
+        shares = np.array(given)
         place = f"{field}.{name}" if field else name
         if shares.size != self._tau.size:
             raise InputError(
