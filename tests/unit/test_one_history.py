@@ -55,6 +55,22 @@ def test_a_problem_that_was_never_solved_leaves_the_contact_free():
     assert contact.resultant()[0][2] > 0.0
 
 
+def test_a_contact_of_another_mesh_is_refused():
+    """Requirement: a contact is of the mesh of its problem, also where both have as many nodes.
+
+    One of a block of a quarter of the area gave three quarters of the force, without a word.
+    """
+    models = [
+        build_box({"block": BoxSpec((0, 0, 0), (size, size, 1), (2, 2, 1))}) for size in (1.0, 2.0)
+    ]
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    rubber = {"block": make_material("neo-hookean", E=10.0, nu=0.3)}
+    made = [Contact(model, "block.bottom", plane, Friction(coefficients=0.3)) for model in models]
+    with pytest.raises(InputError, match=r"contact 'block\.bottom': it was made on another model"):
+        Problem(models[1], rubber, made[:1])
+    assert Problem(models[1], rubber, made[1:]).contacts == made[1:]
+
+
 def test_a_rigid_body_goes_on_in_its_own_problem():
     """Requirement: the same of its pose: a plate that had moved began where it was.
 

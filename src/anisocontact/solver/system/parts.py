@@ -101,7 +101,8 @@ def make_parts(
     """Parts of a problem, from the arguments of `Problem`.
 
     Raises:
-        InputError: A body without material, a material without body, or two contacts of one name.
+        InputError: A body without material, a material without body, two contacts of one name,
+            or one on another model.
     """
     _check(model, materials, contacts)
     specs = connections.attached
@@ -209,5 +210,12 @@ def _check(
         if names.count(name) > 1:
             raise InputError(f"two contacts have the name {name!r}", "contact")
     check_given_once(contacts, "contact")
+    for contact in contacts:
+        if not contact.unknowns.among(model.space):
+            raise InputError(
+                "it was made on another model, and knows nothing of this mesh: make a contact on "
+                "the model of the problem",
+                f"contact {contact.name!r}",
+            )
     for name, material in materials.items():
         model.idealisation.check_material(bare(material), f"material.{name}")

@@ -73,7 +73,8 @@ class Problem(ReportedSystem):
         balance: Forces of the last evaluation.
 
     Raises:
-        InputError: A body without material, a material without body, or two contacts of one name.
+        InputError: A body without material, a material without body, two contacts of one name,
+            or one on another model.
 
     Example:
         >>> from anisocontact.bulk import make_material
