@@ -116,7 +116,8 @@ class CaseReference:
             return f"list of {len(schema['prefixItems'])}: {', '.join(items)}"
         least, most = schema.get("minItems"), schema.get("maxItems")
         size = f" of {least}:" if least is not None and least == most else " of"
-        return f"list{size} {self._words(schema.get('items', {}))}"
+        items = self._words(schema.get("items", {}))
+        return f"list{size} ({items})" if " or " in items else f"list{size} {items}"
 
 
 def references(schema: Schema, path: str) -> Iterator[tuple[str, str]]:

@@ -14,7 +14,9 @@ def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def toml(value: object) -> str:
-    """Return a value as TOML writes it."""
+    """Return a value as TOML writes it; of numbers what they were given as, not their rounding."""
+    if isinstance(value, float):
+        return str(float(f"{value:.12g}"))
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

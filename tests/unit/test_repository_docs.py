@@ -3,6 +3,7 @@
 import argparse
 import fnmatch
 import importlib
+import math
 import re
 import subprocess
 import sys
@@ -80,6 +81,11 @@ def test_case_page_shows_places_bounds_and_defaults(
                     "E": {"type": "number", "exclusiveMinimum": 0, "description": "a | b"},
                     "on": {"type": "boolean", "default": True},
                     "axis": {"type": "array", "minItems": 3, "maxItems": 3} | NUMBERS,
+                    "turn": {"type": "number", "default": math.degrees(math.radians(30.0))},
+                    "pairs": {
+                        "type": "array",
+                        "items": {"anyOf": [{"type": "number"}, {"type": "array"} | NUMBERS]},
+                    },
                 }
             },
             "Pair": {"properties": {"law": {"anyOf": [{"$ref": "#/$defs/Soft"}, {"const": "no"}]}}},
@@ -92,6 +98,8 @@ def test_case_page_shows_places_bounds_and_defaults(
     assert r"| `E` | number > 0 |  | a \| b |" in page
     assert "| `on` | boolean | `true` |" in page
     assert "| `axis` | list of 3: number |" in page
+    assert "| `turn` | number | `30.0` |" in page
+    assert "| `pairs` | list of (number or list of number) |" in page
     assert '| `law` | [`"soft"`](#soft) or `"no"` |' in page
     assert '## `pair[].law`: `"soft"`\n' in page
 
