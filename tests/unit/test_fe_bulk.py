@@ -53,7 +53,7 @@ def test_bad_parameters_are_one_line(parameters, words):
     ],
 )
 def test_shares_that_relax_are_as_many_as_their_times(lists, said):
-    """Requirement: no list is taken for zeros but `k`, which may be left out: nothing would relax."""
+    """Requirement: only `k` may be left out; lists that are empty let nothing relax."""
     from anisocontact.bulk import make_material
 
     assert make_material("viscoelastic", E=1.0, nu=0.3, g=[0.0], tau=[1.0], k=[0.1])
