@@ -5,25 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.aims import Aim, Beginning, Stay, Turned, aim_of
 from anisocontact.solver.terms.free_modes import Supported, along_axes
-from anisocontact.solver.terms.step import AXES, Goal, Step
-from anisocontact.solver.terms.turn import Turn
+from anisocontact.solver.terms.step import AXES, Step
 
 Support = tuple[str, int]  # group of facets or nodes, axis
 
 
 #: Displacements that count as the same, over the largest coordinate.
 SAME = 1e-13
-
-# What is prescribed for an unknown: a value, along a course or a turn, or nowhere (after these).
-Aim = Goal | Turn | None
-
-#: Places along a step at which what follows a course is compared with what else is prescribed.
-_PLACES = 16
 
 
 class Supports:
@@ -44,11 +37,9 @@ class Supports:
         self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
         self._fixed = _fixed(model)
         self._nodes: dict[str, Ints] = {}
-        self._goals: dict[Support, Aim] = {}
+        self._aims: dict[Support, Aim] = {}
         self._owner: dict[Support, Ints] = {}
-        self._turned: list[tuple[Turn, Ints, Floats]] = []
-        self._courses: list[tuple[Course, Ints]] = []
-        self._duration = 1.0
+        self._curved: list[tuple[Aim, Ints, Beginning]] = []
         self.unknowns: Ints = np.zeros(0, dtype=np.int64)
         self.start: Floats = np.zeros(0)
         self.end: Floats = np.zeros(0)
@@ -70,9 +61,10 @@ class Supports:
         taken = np.full((len(self.places), len(u)), np.nan)
         taken[:, self._fixed] = 0.0
         owner: dict[Support, Ints] = {}
-        for (group, axis), goal in self._goals.items():
+        for (group, axis), aim in self._aims.items():
             unknowns = 3 * self._owned_nodes(group) + axis
-            value = np.array([self._at(goal, unknowns, u, share) for share in self.places])
+            start = self._beginning(axis, unknowns, u, step.duration)
+            value = np.array([aim.at(share, start) for share in self.places])
             clash = np.abs(taken[:, unknowns] - value) > self._same
             if clash.any():
                 place, first = np.argwhere(clash)[0]
@@ -85,21 +77,20 @@ class Supports:
         self.unknowns = np.flatnonzero(~np.isnan(taken[-1]))
         self.start = self.values = u[self.unknowns]
         self.end = taken[-1, self.unknowns]
-        self._turned = [
-            (goal, supported, self._positions(supported // 3, u))
-            for key, supported in owner.items()
-            if isinstance(goal := self._goals[key], Turn)
-        ]
-        self._courses = [
-            (goal, np.searchsorted(self.unknowns, supported))
-            for key, supported in owner.items()
-            if isinstance(goal := self._goals[key], Course)
+        self._curved = [
+            (
+                self._aims[group, axis],
+                np.searchsorted(self.unknowns, supported),
+                self._beginning(axis, supported, u, step.duration),
+            )
+            for (group, axis), supported in owner.items()
+            if not self._aims[group, axis].straight
         ]
 
     @property
     def places(self) -> Floats:
         """Shares of the step at which it is to be looked at: its end, or places all along it."""
-        count = _PLACES if any(isinstance(g, Course) for g in self._goals.values()) else 1
+        count = max((aim.places for aim in self._aims.values()), default=1)
         return np.arange(1, count + 1) / count
 
     def supported(self) -> list[Supported]:
@@ -118,9 +109,7 @@ class Supports:
     def _still(self) -> Flags:
         """Which of the unknowns stay where they are all along the step."""
         still = np.abs(self.end - self.start) <= self._same
-        for _, turned, _ in self._turned:
-            still[np.searchsorted(self.unknowns, turned)] = False
-        for _, place in self._courses:
+        for _, place, _ in self._curved:
             still[place] = False
         return np.asarray(still)
 
@@ -131,17 +120,13 @@ class Supports:
 
     def stop(self) -> None:
         """The step ends where it is: prescribed values stay there."""
-        self._goals = dict.fromkeys(self._goals)
+        self._aims = dict.fromkeys(self._aims, Stay())
 
     def set_load_factor(self, factor: float) -> None:
         """Go to a fraction of the step."""
         values = (1.0 - factor) * self.start + factor * self.end
-        for turn, supported, start in self._turned:
-            place = np.searchsorted(self.unknowns, supported)
-            moved = turn.path(start, factor) - start
-            values[place] = self.start[place] + moved[np.arange(len(supported)), supported % 3]
-        for course, place in self._courses:
-            values[place] = course.at(factor, self._duration, self.start[place])
+        for aim, place, start in self._curved:
+            values[place] = aim.at(factor, start)
         self.values = values
 
     def violation(self, x: Vec) -> Floats:
@@ -149,38 +134,29 @@ class Supports:
         return np.asarray(x.array_r[self.unknowns] - self.values)
 
     def _take_over(self, step: Step) -> None:
-        self._duration = step.duration
-        for key, goal in self._goals.items():
-            if isinstance(goal, Turn | Course):
-                self._goals[key] = None
+        for key, aim in self._aims.items():
+            if not aim.straight:
+                self._aims[key] = Stay()
         for group, values in step.displacement.items():
             self._model.nodes(group, f"step {step.name!r}.displacement")
             for name, given in values.items():
-                self._goals.pop((group, AXES.index(name)), None)
+                self._aims.pop((group, AXES.index(name)), None)
                 if given is not None:
-                    self._goals[group, AXES.index(name)] = given
+                    self._aims[group, AXES.index(name)] = aim_of(given)
         for group in step.cylindrical:
             for axis in range(3):
-                self._goals.pop((group, axis), None)
+                self._aims.pop((group, axis), None)
         for group, turn in step.turned_groups().items():
             self._model.nodes(group, f"step {step.name!r}.rotation")
             for axis in range(3):
-                self._goals.pop((group, axis), None)
-                self._goals[group, axis] = turn
+                self._aims.pop((group, axis), None)
+                self._aims[group, axis] = Turned(turn)
 
-    def _at(self, goal: Aim, unknowns: Ints, u: Floats, share: float) -> Floats:
-        """Values of unknowns of one axis at a share of the step."""
-        if isinstance(goal, Turn):
-            start = self._positions(unknowns // 3, u)
-            moved = goal.path(start, share) - start
-            return np.asarray(u[unknowns] + moved[np.arange(len(unknowns)), unknowns % 3])
-        if isinstance(goal, Course):
-            return np.asarray(goal.at(share, self._duration, u[unknowns]))
-        start = u[unknowns]
-        return start if goal is None else (1.0 - share) * start + share * np.full(start.shape, goal)
-
-    def _positions(self, nodes: Ints, u: Floats) -> Floats:
-        return np.asarray(self._model.positions[nodes] + u.reshape(-1, 3)[nodes])
+    def _beginning(self, axis: int, unknowns: Ints, u: Floats, duration: float) -> Beginning:
+        """Where the nodes of unknowns are when a step begins."""
+        nodes = unknowns // 3
+        positions = np.asarray(self._model.positions[nodes] + u.reshape(-1, 3)[nodes])
+        return Beginning(axis, u[unknowns], positions, duration)
 
     def reactions(self, force: Floats) -> dict[str, Floats]:
         """Force of each group's supports on the body.
