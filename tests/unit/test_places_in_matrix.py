@@ -19,6 +19,12 @@ def _pattern(n, density):
     return own
 
 
+def _places_of(own):
+    """Of a matrix of PETSc whose entries are those of `own`, at any time."""
+    sides = (own.indptr.astype(PETSc.IntType), own.indices.astype(PETSc.IntType))
+    return PlacesInMatrix(PETSc.Mat().createAIJWithArrays(own.shape, (*sides, own.data)))
+
+
 def _petsc(of):
     sides = (of.indptr.astype(PETSc.IntType), of.indices.astype(PETSc.IntType))
     return PETSc.Mat().createAIJ(of.shape, csr=(*sides, of.data))
@@ -45,10 +51,10 @@ def _with_room(own, more, density=0.1):
 def test_entries_come_to_their_places_beside_others(more):
     """Copies, so the same bits; what has no counterpart stays."""
     own = _pattern(30, 0.1)
-    out, places = _with_room(own, more), PlacesInMatrix(own.indptr, own.indices)
+    out, places = _with_room(own, more), _places_of(own)
     for _ in range(3):
         own.data[:] = RNG.standard_normal(own.nnz)
-        assert places.copy(own.data, out)
+        assert places.copy(out)
         assert np.array_equal(_dense(out)[:30, :30], own.toarray())
         assert not _dense(out)[30:].any() and not _dense(out)[:, 30:].any()
     assert places.found == 1
@@ -57,30 +63,30 @@ def test_entries_come_to_their_places_beside_others(more):
 def test_places_are_looked_for_again_in_another_matrix_and_in_one_that_has_grown():
     """Contacts that couple other nodes make a new matrix, or new entries in the one there is."""
     own = _pattern(30, 0.1)
-    places = PlacesInMatrix(own.indptr, own.indices)
+    places = _places_of(own)
     first, second = _with_room(own, 0), _with_room(own, 3, 0.2)
     for out in (first, second, first):
-        assert places.copy(own.data, out)
+        assert places.copy(out)
         assert np.array_equal(_dense(out)[:30, :30], own.toarray())
     first.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
     for column in range(30):
         first.setValue(0, column, 0.0, PETSc.InsertMode.INSERT_VALUES)
     first.assemble()
-    assert places.copy(own.data, first)
+    assert places.copy(first)
     assert np.array_equal(_dense(first), own.toarray())
 
 
 def test_places_are_looked_for_again_where_a_matrix_is_laid_out_anew():
     """As contacts do it whose couplings have moved: as many entries as before, elsewhere."""
     own = scipy.sparse.csr_array(scipy.sparse.eye_array(30))
-    places = PlacesInMatrix(own.indptr, own.indices)
+    places = _places_of(own)
     before = scipy.sparse.csr_array(scipy.sparse.diags_array([np.ones(29)], offsets=[-1]) + own)
     after = scipy.sparse.csr_array(before.T)
     out = _petsc(before)
     for pattern in (before, after, before):
         sides = (pattern.indptr.astype(PETSc.IntType), pattern.indices.astype(PETSc.IntType))
         out.setPreallocationCSR((*sides, np.zeros(pattern.nnz)))
-        assert places.copy(own.data, out)
+        assert places.copy(out)
         assert np.array_equal(_dense(out), own.toarray())
 
 
@@ -89,14 +95,16 @@ def test_nothing_is_written_where_a_place_is_missing():
     own = _pattern(30, 0.1)
     out = _petsc(scipy.sparse.csr_array(scipy.sparse.eye_array(30)))
     before = _dense(out)
-    assert not PlacesInMatrix(own.indptr, own.indices).copy(own.data, out)
+    assert not _places_of(own).copy(out)
     assert np.array_equal(_dense(out), before)
 
 
 def test_columns_out_of_order_are_not_taken():
     """Places are found by a merge of rows whose columns increase."""
     out = _petsc(scipy.sparse.csr_array(np.ones((2, 2))))
-    assert not PlacesInMatrix(np.array([0, 2, 3]), np.array([1, 0, 1])).copy(np.ones(3), out)
+    sides = (np.array([0, 2, 3]), np.array([1, 0, 1]))
+    own = scipy.sparse.csr_array((np.ones(3), sides[1], sides[0]), (2, 2))
+    assert not _places_of(own).copy(out)
 
 
 @pytest.mark.parametrize("components", [3, 1], ids=["one space", "two spaces"])

@@ -324,6 +324,24 @@ def test_everything_in_contact() -> None:
     assert notes
 
 
+def test_corrections_are_as_precise_as_newton_asks_for() -> None:
+    """Rough ones while contact still changes, with as many of them as with a factorisation.
+
+    Source: [Eisenstat Walker 1996]: what a correction leaves is of the size of what Newton's method
+    leaves. Tolerance: one iteration of Newton's method in ten, as points may end one with another
+    status; five Krylov iterations, where there are 5.8 with each correction found to 1e-4.
+    """
+    steps = [Step("press", 2, {**CLAMP, "block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}), DRAG]
+    iterations = {}
+    notes: list[str] = []
+    for strategy in ("iterative", "direct"):
+        solver = Solver(_pair(8), steps, strategy=strategy)
+        iterations[strategy] = sum(a.iterations for a in solver.run(on_note=notes.append))
+        if strategy == "iterative":
+            assert _counts(notes)[0] < 5.0
+    assert iterations["iterative"] <= 1.1 * iterations["direct"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [_on_plane, _pair], ids=["plane", "block"])
 def test_bounded_counts(make: Callable[..., Problem]) -> None:

@@ -49,7 +49,7 @@ class FormMatrix:
             sizes = self.matrix.getSizes()
             csr = (*sides, self._rows.data)
             self._wrapped = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
-            self._places = PlacesInMatrix(*parts)
+            self._places = PlacesInMatrix(self._wrapped)
 
     def write(self, out: Mat, *, again: bool = False) -> None:
         """Write the matrix into one that has room for it, assembled.
@@ -61,7 +61,7 @@ class FormMatrix:
         out.zeroEntries()
         if not again:
             self._assemble()
-        if self._rows is None or not self._places.copy(self._rows.data, out):
+        if self._rows is None or not self._places.copy(out):
             add_matrix(out, self._wrapped)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
 

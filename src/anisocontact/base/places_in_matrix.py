@@ -1,12 +1,13 @@
-"""Where the entries of a sparse matrix stand in one of PETSc that has room for more."""
+"""Where the entries of a sparse matrix of PETSc stand in one that has room for more."""
 
 from __future__ import annotations
 
 import ctypes
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
@@ -18,13 +19,12 @@ _NEEDED = ("MatSeqAIJGetArray", "MatSeqAIJRestoreArray", "MatGetNonzeroState")
 
 
 class PlacesInMatrix:
-    """Copies the entries of a sparse matrix to where they stand in one of PETSc.
+    """Copies the entries of a sparse matrix to where they stand in one that has room for more.
 
     Places are looked for once for a matrix and its pattern, on one process.
 
     Args:
-        starts: First entry of every row, (rows + 1,).
-        columns: Column of every entry, increasing in every row, (entries,).
+        source: The matrix with the entries; its columns increase in every row, its pattern stays.
 
     Attributes:
         found: How often places have been looked for.
@@ -32,23 +32,23 @@ class PlacesInMatrix:
     Example:
         >>> from anisocontact.base.fenicsx import PETSc
         >>> out = PETSc.Mat().createAIJ((2, 2), csr=([0, 2, 4], [0, 1, 0, 1], [1.0, 2.0, 3.0, 4.0]))
-        >>> PlacesInMatrix([0, 1, 2], [0, 1]).copy(np.array([5.0, 6.0]), out)
+        >>> source = PETSc.Mat().createAIJ((2, 2), csr=([0, 1, 2], [0, 1], [5.0, 6.0]))
+        >>> PlacesInMatrix(source).copy(out)
         True
         >>> out.getValuesCSR()[2]
         array([5., 2., 3., 6.])
     """
 
-    def __init__(self, starts: Any, columns: Any) -> None:
-        self._starts, self._columns = np.asarray(starts), np.asarray(columns)
+    def __init__(self, source: Mat) -> None:
+        self._source = source
         self._mark, self._state = object(), -1
-        self._places: Ints | None = None
+        self._places: _Places | None = None
         self.found = 0
 
-    def copy(self, values: Floats, out: Mat) -> bool:
-        """Write entries over those that a matrix has there.
+    def copy(self, out: Mat) -> bool:
+        """Write the entries of now over those that a matrix has there.
 
         Args:
-            values: The entries, (entries,).
             out: The matrix; further rows and columns stay as they are.
 
         Returns:
@@ -60,31 +60,76 @@ class PlacesInMatrix:
         call_petsc("MatGetNonzeroState", out, ctypes.byref(state))
         if out.getAttr(_MARK) is not self._mark or state.value != self._state:
             self._mark, self._state = object(), state.value
-            self._places = self._look(out)
+            self.found += 1
+            self._places = _places(self._source, out)
             out.setAttr(_MARK, self._mark)
         if self._places is None:
             return False
-        entries = ctypes.POINTER(ctypes.c_double)()
-        call_petsc("MatSeqAIJGetArray", out, ctypes.byref(entries))
-        count = int(out.getInfo()["nz_used"])
-        np.ctypeslib.as_array(entries, (count,))[self._places] = values
-        call_petsc("MatSeqAIJRestoreArray", out, ctypes.byref(entries))
+        with _entries(self._source) as source, _entries(out) as there:
+            self._places.copy(source, there)
         return True
 
-    def _look(self, out: Mat) -> Ints | None:
-        """Places of all entries; None where one is missing."""
-        self.found += 1
-        starts, columns = out.getRowIJ()
-        rows, width = len(self._starts) - 1, out.getSize()[1]
-        if len(starts) <= rows:
+
+@dataclass(frozen=True)
+class _Places:
+    """Places of entries: most rows of bodies are with contact as they are without.
+
+    Args:
+        pieces: Entries of rows that are the same in both: first there, first and end in the source.
+        there: Places of the entries of other rows.
+        source: Where these are in the source.
+    """
+
+    pieces: list[tuple[int, int, int]]
+    there: Ints
+    source: Ints
+
+    def copy(self, source: Floats, there: Floats) -> None:
+        """Write entries to their places."""
+        for start, first, end in self.pieces:
+            there[start : start + end - first] = source[first:end]
+        there[self.there] = source[self.source]
+
+
+def _places(source: Mat, out: Mat) -> _Places | None:
+    """Places of all entries; None where one is missing."""
+    own, columns = source.getRowIJ()
+    starts, room = out.getRowIJ()
+    rows = len(own) - 1
+    if len(starts) <= rows:
+        return None
+    starts = starts[: rows + 1]
+    same = np.diff(own) == np.diff(starts)
+    edges = np.flatnonzero(np.diff(same, prepend=False, append=False))
+    pieces = []
+    for first, end in edges.reshape(-1, 2):
+        if not np.array_equal(columns[own[first] : own[end]], room[starts[first] : starts[end]]):
             return None
-        starts = starts[: rows + 1]
-        columns = columns[: starts[-1]]
-        numbers = np.arange(1, len(columns) + 1)
-        there = scipy.sparse.csr_array((numbers, columns, starts), (rows, width))
-        ones = np.ones(len(self._columns), dtype=numbers.dtype)
-        own = scipy.sparse.csr_array((ones, self._columns, self._starts), (rows, width))
-        if not (there.has_canonical_format and own.has_canonical_format):
-            return None
-        places = there.multiply(own).tocsr().data - 1
-        return places if len(places) == len(ones) else None
+        pieces.append((int(starts[first]), int(own[first]), int(own[end])))
+    others, width = np.flatnonzero(~same), out.getSize()[1]
+    entries, keys = _keyed(others, own, columns, width)
+    places, known = _keyed(others, starts, room, width)
+    at = np.searchsorted(known, keys)
+    increasing = bool(np.all(np.diff(keys) > 0) and np.all(np.diff(known) > 0))
+    if not increasing or not np.array_equal(np.append(known, -1)[at], keys):
+        return None
+    return _Places(pieces, places[at], entries)
+
+
+def _keyed(rows: Ints, starts: Ints, columns: Ints, width: int) -> tuple[Ints, Ints]:
+    """Entries of some rows, and a number for each that increases by rows and columns."""
+    counts = np.diff(starts)[rows].astype(np.int64)
+    ends = np.cumsum(counts)
+    entries = np.arange(counts.sum()) + np.repeat(starts[rows] - ends + counts, counts)
+    return entries, np.repeat(rows, counts) * width + columns[entries]
+
+
+@contextmanager
+def _entries(matrix: Mat) -> Iterator[Floats]:
+    """The entries of a matrix of this process, by rows, to read or overwrite."""
+    entries = ctypes.POINTER(ctypes.c_double)()
+    call_petsc("MatSeqAIJGetArray", matrix, ctypes.byref(entries))
+    try:
+        yield np.ctypeslib.as_array(entries, (int(matrix.getInfo()["nz_used"]),))
+    finally:
+        call_petsc("MatSeqAIJRestoreArray", matrix, ctypes.byref(entries))

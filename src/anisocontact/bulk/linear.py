@@ -11,6 +11,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
 from anisocontact.base.fenicsx import Mat, Vec, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
+from anisocontact.base.places_in_matrix import PlacesInMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated
@@ -53,6 +54,7 @@ class LinearBulk:
         self._model, self._bilinear = model, _bilinear_form(model, materials, dx)
         form = compiled(self._bilinear, model.mesh.comm)
         self.stiffness = create_stiffness(form)
+        self._places = PlacesInMatrix(self.stiffness)
         self._u: Any = fem.Function(model.space)
         self._pressures = CellPressures(model, materials, self._u, dx)
         self._pressures.add_tangent(self.stiffness)
@@ -131,7 +133,8 @@ class LinearBulk:
             again: Whether it may be what the last call has written: it is always that.
         """
         out.zeroEntries()
-        add_matrix(out, self.stiffness)
+        if not self._places.copy(out):
+            add_matrix(out, self.stiffness)
         out.assemble()
 
     @property

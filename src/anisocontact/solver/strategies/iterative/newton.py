@@ -8,6 +8,7 @@ from typing import override
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.database import OptionValue
+from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.iterative.defaults import DEFAULTS, MIXED
 from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.iterative.mixed import MixedKrylov
@@ -16,14 +17,9 @@ from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
-#: Residual of a correction over that of its start, at most.
-LOOSEST = 1e-4
-#: Share of Newton's tolerance that a last correction may leave.
-LAST = 0.1
-#: Residual of a correction where multipliers follow, over the forces out of balance; over all.
-FINE, FINEST = 1e-8, 1e-14
-#: Stands for a residual that is zero.
-TINY = 1e-300
+#: Residual of a correction over its right-hand side, at most. With 1e-2 linear bodies take as many
+#: iterations as with 1e-4, and a tenth more with 1e-1; bodies at finite strain a twentieth more.
+OF_LINEAR, OF_OTHERS = 1e-2, 1e-4
 #: Solutions without convergence after which the log says what else there is.
 TOLD = 3
 
@@ -31,8 +27,7 @@ TOLD = 3
 class IterativeNewton(Newton):
     """SNES with FGMRES and levels, see `Levels`.
 
-    A correction is as precise as Newton's next residual asks for: with the residual r over the
-    forces at work, `min(1e-4, r)`, and never more than what Newton's tolerance needs.
+    A correction is as precise as Newton's next residual asks for, see `Forcing`.
 
     Args:
         problem: The problem.
@@ -59,6 +54,8 @@ class IterativeNewton(Newton):
         self.krylov: list[int] = []
         self._note, self._nodal = note, problem
         self._failures = 0
+        rough = OF_LINEAR if problem.linear else OF_OTHERS
+        self._forcing = Forcing(self.snes.getTolerances()[0], rough, rough)
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
         self._asked = any(name.startswith("ksp_") for name in given)
@@ -75,6 +72,7 @@ class IterativeNewton(Newton):
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
     ) -> NewtonResult:
         """See `Newton.solve`."""
+        self._forcing.begin()
         result = super().solve(x, full_steps, damping)
         if self.snes.getKSP().getConvergedReason() < 0:
             self._failures += 1
@@ -135,17 +133,8 @@ class IterativeNewton(Newton):
     def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, other: Mat) -> None:
         super()._jacobian(snes, x, matrix, other)
         if self._adapts:
-            snes.getKSP().setTolerances(rtol=self._precision(snes))
-
-    def _precision(self, snes: SNES) -> float:
-        """Residual of the next correction over that of its start."""
-        residual = self._residuals[-1]
-        if self._problem.contact_term.simultaneous:
-            # forces that take violations away are large beside those that are out of balance
-            size = max(snes.getFunction()[0].norm(), TINY)
-            return float(max(FINE * min(self._problem.balance.norm / size, 1.0), FINEST))
-        needed = LAST * snes.getTolerances()[0] / max(residual, TINY)
-        return float(max(min(LOOSEST, residual), min(needed, LOOSEST)))
+            size = snes.getFunction()[0].norm()
+            snes.getKSP().setTolerances(rtol=self._forcing.rtol(self._problem, size))
 
     def _count(self, ksp: PETSc.KSP, _: Vec, __: Vec) -> None:
         self.krylov.append(ksp.getIterationNumber())
