@@ -29,7 +29,7 @@ from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.stepping.attempts import Attempts, _Way
+from anisocontact.solver.stepping.attempts import Attempts, _Attempt
 from anisocontact.solver.strategies.condensed import (
     bordered,
     interior,
@@ -120,7 +120,7 @@ def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
     newton: Any = None
     attempts = Attempts(problem, newton, newton, newton)
     x = problem.accepted()
-    searching, full = _Way(x, full_steps=False), _Way(x)
+    searching, full = _Attempt(x, full_steps=False), _Attempt(x)
     assert len(attempts._ways(searching, full, False)) == count
     assert len(attempts._apart(searching, full)) == count  # those with penalties
     assert len(attempts._ways(replace(searching, ratio=1.0), full, False)) == 2
