@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import select
 import shutil
-import subprocess
-import sys
 import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from matplotlib.artist import Artist
-from matplotlib.image import imread
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact import __version__
 from anisocontact.base.errors import InputError
-from anisocontact.base.figure_style import new_figure, save
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
@@ -30,7 +23,6 @@ from anisocontact.results.deformed import SHOWN, magnification
 from anisocontact.results.output_options import Labels
 from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.run_data import RunData
-from anisocontact.results.report.shared_work import attempts
 from anisocontact.results.report_process import report_beside
 from anisocontact.results.solids import Solid
 from anisocontact.results.writer import Writer
@@ -240,31 +232,6 @@ def test_report_can_be_made_again_from_the_folder(quick, run):
     assert picture.read_bytes() == before
 
 
-def test_a_picture_is_drawn_once(tmp_path):
-    """`savefig` of Matplotlib draws twice; the pixels are the same."""
-    figure, twice, drawn = new_figure(3.0, 2.0), tmp_path / "twice.png", []
-    left, right = figure.subplots(1, 2)
-    left.plot([0.0, 1.0], [1.0, 3.0], label="line")
-    right.set(title="title", xlabel="x [length]")
-    figure.legend(loc="outside lower center")
-    figure.savefig(twice)
-    figure.add_artist(_Counting(drawn))
-    save(figure, tmp_path / "once.png")
-    assert drawn == [figure]
-    assert np.array_equal(imread(tmp_path / "once.png"), imread(twice))
-
-
-class _Counting(Artist):
-    """Nothing to be seen; counts how often it is drawn."""
-
-    def __init__(self, drawn):
-        super().__init__()
-        self.drawn = drawn
-
-    def draw(self, renderer):
-        self.drawn.append(self.figure)
-
-
 def test_a_picture_that_fails_does_not_cost_the_report(run, monkeypatch):
     def broken(*_: object) -> None:
         raise RuntimeError("no ink")
@@ -306,53 +273,6 @@ def test_a_report_is_drawn_beside_the_run(run, tmp_path):
         first = pictures()
         assert reporter(folder) == []  # it has ended: this process draws
     assert pictures() == first
-
-
-def test_what_draws_is_imported_without_descriptions():
-    """Matplotlib's texts on what can be set take a third of its import; `set` does without them."""
-    code = (
-        "from anisocontact.results import report_worker; report_worker._main(); "
-        "from matplotlib.artist import Artist; from matplotlib.lines import Line2D; "
-        "from matplotlib.patches import Patch; line = Line2D([], []); line.set(lw=3.0); "
-        "print(line.get_linewidth(), [one.set is Artist.set for one in (Line2D, Patch)])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.split(maxsplit=1) == ["3.0", "[True, True]\n"]
-
-
-def test_work_is_shared_with_a_copy():
-    """Each piece is done once and told in its place, by whoever is free; all here if a copy dies.
-
-    The first piece waits for what the second one does, which one process alone would do after it.
-    """
-    ours, theirs = os.pipe()
-    here = os.getpid()
-
-    def waits():
-        ready, _, _ = select.select([ours], [], [], 20.0)
-        return os.read(ours, 1).decode() if ready else "alone"
-
-    def frees():
-        os.write(theirs, b"x")
-        return "frees"
-
-    assert attempts([waits, frees, lambda: "last"], forks=True) == ["x", "frees", "last"]
-    os.close(ours)
-    os.close(theirs)
-    assert attempts([lambda: str(os.getpid() == here)] * 3, forks=False) == ["True"] * 3
-
-    def dying():
-        if os.getpid() != here:
-            os._exit(1)
-        return "here"
-
-    assert attempts([dying] * 3, forks=True) == ["here"] * 3
 
 
 def test_bodies_that_move_far_are_true_to_scale(run):
