@@ -160,14 +160,7 @@ class Attempts:
         overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
         found: list[Culprit] = []
         seen: set[str] = set()
-        searching, full = _Attempt(first, ratio, full_steps=False), _Attempt(last)
-        both = self._apart(searching, full)
-        relaxed = [replace(way, multipliers=PENALTIES) for way in both]
-        if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
-            relaxed = []
-        ways = self._ways(searching, full, control.softer)
-        if relaxed:
-            ways = [*(ways[:1] if control.relaxed else ways), *relaxed]
+        ways = self._planned(first, last, ratio, control)
         for way in ways:
             result, culprits = self._attempt(way)
             spent += result.iterations
@@ -190,6 +183,17 @@ class Attempts:
         hint = self._continuation.hint()
         final, failed_at = self._final or hopeless, self._failed
         return Outcome(result, tuple(found), final, hint, failed_at, refused=self._final)
+
+    def _planned(
+        self, first: Vec, last: Vec, ratio: float, control: IncrementControl
+    ) -> list[_Attempt]:
+        """Attempts in their order, without the last resorts; arguments as of `solve`."""
+        searching, full = _Attempt(first, ratio, full_steps=False), _Attempt(last)
+        ways = self._ways(searching, full, control.softer)
+        if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
+            return ways
+        relaxed = [replace(way, multipliers=PENALTIES) for way in self._apart(searching, full)]
+        return [*(ways[:1] if control.relaxed else ways), *relaxed]
 
     def _ways(self, searching: _Attempt, full: _Attempt, softer: bool) -> list[_Attempt]:
         trusts = self._problem.stabilisation.trusts

@@ -60,15 +60,9 @@ def gmres[T: (np.float32, np.float64)](
         if not (np.isfinite(w).all() if total is None else math.isfinite(size(w))):
             break
         used += 1
-        column = np.zeros(used + 1)
-        for _ in range(2):  # twice is enough for orthogonality to rounding
-            shares = product(1.0, basis[:, :used], w, trans=1)
-            shares = shares if total is None else total(shares)
-            column[:used] += shares
-            w = product(-1.0, basis[:, :used], shares, beta=1.0, y=w)
+        w, shares = _orthogonal(w, basis[:, :used], product, total)
         length = size(w)
-        column[used] = length
-        left = reduced.add(column) / norm
+        left = reduced.add(np.append(shares, length)) / norm
         if left <= rtol or length == 0.0:
             break
         if trial is not None and used >= trial and _too_slow(left, used, rtol, most):
@@ -78,6 +72,22 @@ def gmres[T: (np.float32, np.float64)](
         return np.zeros_like(b), 1.0, 0
     y = reduced.solution().astype(b.dtype)
     return product(1.0, directions[:, :used], y), left, used
+
+
+def _orthogonal[T: (np.float32, np.float64)](
+    w: npt.NDArray[T],
+    basis: npt.NDArray[T],
+    product: Callable[..., npt.NDArray[T]],
+    total: Callable[[npt.NDArray[T]], npt.NDArray[T]] | None,
+) -> tuple[npt.NDArray[T], Floats]:
+    """A vector without its shares in an orthonormal basis, and these."""
+    shares = np.zeros(basis.shape[1])
+    for _ in range(2):  # twice is enough for orthogonality to rounding
+        found = product(1.0, basis, w, trans=1)
+        found = found if total is None else total(found)
+        shares += found
+        w = product(-1.0, basis, found, beta=1.0, y=w)
+    return w, shares
 
 
 def _too_slow(left: float, used: int, rtol: float, most: int) -> bool:
