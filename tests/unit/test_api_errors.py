@@ -20,7 +20,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box, make_shape
 from anisocontact.point import DeadLoad, PrescribedPath
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import ContactProblem, Problem, Step, Until
+from anisocontact.solver import ContactProblem, Problem, Solver, Step, Until
 from anisocontact.surfaces import make_surface
 
 from dolfinx.mesh import create_unit_cube, meshtags
@@ -35,6 +35,14 @@ INTERFACE, PAIR = Interface(PLANE, *LAWS), ContactLaw(*LAWS)
 START = INTERFACE.initial_state([[0, 0, 0]])
 KNOTS = [(0, 0, 0), (1, 0, 0)]
 STEEL = make_material("linear-elastic", E=1.0, nu=0.3)
+
+
+HELD = {f"{body}.top": {"x": 0.0, "y": 0.0, "z": 0.0} for body in ("block", "base")}
+
+
+def held(model: Model) -> Problem:
+    """Bodies of steel without contact."""
+    return Problem(model, dict.fromkeys(model.body_names(), STEEL))
 
 
 def _tags_of_another_mesh() -> object:
@@ -211,6 +219,10 @@ WRONG = {
     "an event that is never reached": (
         lambda m: Until(reaction="block.top", value=np.inf),
         "until.value: inf given, a finite number needed",
+    ),
+    "a table for a state": (
+        lambda m: Solver(held(m), [Step("a", 1, HELD)]).restore({}),
+        "kept: {} given, Persistent needed",
     ),
     "no number for a motion": (
         lambda m: RigidBody("die", reference=(0, 0, 0)).move(x=float("nan")),

@@ -164,6 +164,7 @@ class Solver:
         kept.strategy.update(self._kept if self._newton is None else self._newton.persistent())
         return kept
 
+    @typed
     def restore(self, kept: Persistent) -> None:
         """Go on from what `persistent` gave; `run` continues there.
 
