@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import scipy
 
 #: Numbers in the units of a case.
 Floats = npt.NDArray[np.float64]
@@ -19,3 +24,6 @@ Codes = npt.NDArray[np.int8]
 
 #: Which of some things.
 Flags = npt.NDArray[np.bool_]
+
+#: Sparse matrices, by rows.
+type Sparse = scipy.sparse.csr_array

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Ints
+from anisocontact.base.array_types import Flags, Ints, Sparse
 from anisocontact.base.errors import InputError
 
 if TYPE_CHECKING:
     from anisocontact.contact.tie_weights import TieConditions
-
-type Sparse = scipy.sparse.csr_array
 
 #: Share of a node that is rounding.
 NO_SHARE = 1e-13

@@ -21,7 +21,7 @@ from functools import partial
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facet_pairs import facing_pairs, largest_radius
@@ -32,8 +32,6 @@ from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
-
-type Sparse = scipy.sparse.csr_array
 
 #: Share of the weight of a node that has to lie on the master for it to be tied: others would be
 #: led by what is far from them. What the master covers is tied by the nodes beside.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.typed import typed
@@ -26,8 +26,6 @@ from anisocontact.solver.terms.sectors import ALONG, Sectors
 
 if TYPE_CHECKING:
     from anisocontact.contact.tie_weights import TieConditions
-
-type Sparse = scipy.sparse.csr_array
 
 #: Gap up to which nodes are tied, over the size of the facets of the master, if none is given.
 TOLERANCE = 0.1
