@@ -30,8 +30,8 @@ class Persistent:
     Attributes:
         nodal: Values at the nodes this rank owns, (nodes, 3) each.
         points: For each pass over slave points, and each body whose material has a history, the
-            values at its points, (points, ...) each; "reference" are their positions in the
-            reference configuration.
+            values at its points, (points, ...) each; "reference" are positions in the reference
+            configuration by which they are found again, no two the same.
         common: What all ranks have in common.
         strategy: What the strategy keeps from one increment to the next; where it keeps anything
             there is one rank, and the arrays have its numbering of the unknowns.
