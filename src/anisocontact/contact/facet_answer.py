@@ -16,7 +16,7 @@ from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sides import Sides, located
 from anisocontact.interface import Response, State
-from anisocontact.interface.contact_law import Evaluated, FacetBatch, FacetLaw
+from anisocontact.interface.contact_law import CoreCall, FacetBatch, FacetLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
@@ -177,7 +177,7 @@ class Evaluation:
         """
         slave, hit = self.sides.points, self.hit
         batch = self.batch(state, tangent)
-        of: Evaluated = "update" if self.by_points else "assemble"
+        of: CoreCall = "update" if self.by_points else "assemble"
         found = found_on_all(self.sides.comm, law, state, dt, batch, of)
         lost = hit.status == FACET_STATUS.index("failed")
         response = response_of(found, lost)
@@ -241,7 +241,7 @@ def response_of(found: Mapping[str, Any], lost: Flags) -> Response:
 
 
 def found_on_all(
-    comm: Any, law: FacetLaw, state: State, dt: float, batch: FacetBatch, of: Evaluated
+    comm: Any, law: FacetLaw, state: State, dt: float, batch: FacetBatch, of: CoreCall
 ) -> dict[str, Any]:
     """What a law answers for a batch; a mistake in a Python law is raised on every rank.
 

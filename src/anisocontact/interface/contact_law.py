@@ -23,7 +23,7 @@ from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
 #: the slave and multipliers can have.
 VECTOR_FORMS = ("transport", "backward-euler")
 #: What the core gives of slave points on facets, see `FacetLaw.evaluate`.
-type Evaluated = Literal["update", "assemble", "tractions"]
+type CoreCall = Literal["update", "assemble", "tractions"]
 #: How many stiffer laws a law keeps.
 _KEPT = 4
 
@@ -286,7 +286,7 @@ class FacetLaw:
         self._tangential, self.in_python = law.tangential, law.tangential.in_python
         self.core = _core.FacetInterface(law.core)
 
-    def evaluate(self, state: State, of: Evaluated, dt: float, batch: FacetBatch) -> dict[str, Any]:
+    def evaluate(self, state: State, of: CoreCall, dt: float, batch: FacetBatch) -> dict[str, Any]:
         """Forces, blocks and the trial state.
 
         Args:

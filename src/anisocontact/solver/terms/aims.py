@@ -17,7 +17,7 @@ _PLACES = 16
 
 
 @dataclass(frozen=True)
-class Beginning:
+class StepBeginning:
     """Nodes where a step begins.
 
     Attributes:
@@ -44,7 +44,7 @@ class Aim(Protocol):
     def straight(self) -> bool:
         """Whether values go linearly to those at the end, where later steps leave them."""
 
-    def at(self, share: float, start: Beginning) -> Floats:
+    def at(self, share: float, start: StepBeginning) -> Floats:
         """Displacement at a share of the step, (n,), length."""
 
 
@@ -55,13 +55,13 @@ class Stay:
     places = 1
     straight = True
 
-    def at(self, share: float, start: Beginning) -> Floats:
+    def at(self, share: float, start: StepBeginning) -> Floats:
         """See `Aim.at`."""
         return start.displacement
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearAim:
     """Nodes go linearly to a displacement.
 
     Attributes:
@@ -73,7 +73,7 @@ class Linear:
     places = 1
     straight = True
 
-    def at(self, share: float, start: Beginning) -> Floats:
+    def at(self, share: float, start: StepBeginning) -> Floats:
         """See `Aim.at`."""
         return np.asarray((1.0 - share) * start.displacement + share * self.value)
 
@@ -91,7 +91,7 @@ class Along:
     places = _PLACES
     straight = False
 
-    def at(self, share: float, start: Beginning) -> Floats:
+    def at(self, share: float, start: StepBeginning) -> Floats:
         """See `Aim.at`."""
         return np.asarray(self.course.at(share, start.duration, start.displacement))
 
@@ -109,7 +109,7 @@ class Turned:
     places = 1
     straight = False
 
-    def at(self, share: float, start: Beginning) -> Floats:
+    def at(self, share: float, start: StepBeginning) -> Floats:
         """See `Aim.at`."""
         moved = self.turn.path(start.positions, share) - start.positions
         return np.asarray(start.displacement + moved[:, start.axis])
@@ -117,4 +117,4 @@ class Turned:
 
 def aim_of(goal: Goal) -> Aim:
     """What a step gives for a component of a displacement."""
-    return Along(goal) if isinstance(goal, Course) else Linear(goal)
+    return Along(goal) if isinstance(goal, Course) else LinearAim(goal)

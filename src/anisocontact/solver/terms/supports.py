@@ -8,7 +8,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.aims import Aim, Beginning, Stay, Turned, aim_of
+from anisocontact.solver.terms.aims import Aim, Stay, StepBeginning, Turned, aim_of
 from anisocontact.solver.terms.free_modes import Supported, along_axes
 from anisocontact.solver.terms.step import AXES, Step
 
@@ -39,7 +39,7 @@ class Supports:
         self._nodes: dict[str, Ints] = {}
         self._aims: dict[Support, Aim] = {}
         self._owner: dict[Support, Ints] = {}
-        self._curved: list[tuple[Aim, Ints, Beginning]] = []
+        self._curved: list[tuple[Aim, Ints, StepBeginning]] = []
         self.unknowns: Ints = np.zeros(0, dtype=np.int64)
         self.start: Floats = np.zeros(0)
         self.end: Floats = np.zeros(0)
@@ -152,11 +152,11 @@ class Supports:
                 self._aims.pop((group, axis), None)
                 self._aims[group, axis] = Turned(turn)
 
-    def _beginning(self, axis: int, unknowns: Ints, u: Floats, duration: float) -> Beginning:
+    def _beginning(self, axis: int, unknowns: Ints, u: Floats, duration: float) -> StepBeginning:
         """Where the nodes of unknowns are when a step begins."""
         nodes = unknowns // 3
         positions = np.asarray(self._model.positions[nodes] + u.reshape(-1, 3)[nodes])
-        return Beginning(axis, u[unknowns], positions, duration)
+        return StepBeginning(axis, u[unknowns], positions, duration)
 
     def reactions(self, force: Floats) -> dict[str, Floats]:
         """Force of each group's supports on the body.

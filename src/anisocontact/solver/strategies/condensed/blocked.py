@@ -17,7 +17,7 @@ _COLUMNS = 64
 
 
 class BlockedFactor(Eliminated):
-    """An interior eliminated by any factorisation of it; arguments as of `Elimination`.
+    """An interior eliminated by any factorisation of it; arguments as of `Eliminator`.
 
     PETSc factorises `A_ii`, with MUMPS if it has it, and S is made of solutions with the columns of
     `A_ic`: several times slower than a partial factorisation, but nothing is needed that PETSc does

@@ -11,10 +11,10 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.solver.strategies.condensed import mumps, pardiso
 from anisocontact.solver.strategies.condensed.blocked import BlockedFactor
-from anisocontact.solver.strategies.condensed.factor import Eliminated, Elimination
+from anisocontact.solver.strategies.condensed.factor import Eliminated, Eliminator
 
 #: Name of each way, whether it is there, and who goes it.
-WAYS: tuple[tuple[str, Callable[[], bool], Elimination], ...] = (
+WAYS: tuple[tuple[str, Callable[[], bool], Eliminator], ...] = (
     ("Pardiso of MKL", lambda: pardiso.routine() is not None, pardiso.PardisoFactor),
     ("MUMPS", mumps.reachable, mumps.MumpsFactor),
     ("PETSc, column by column", lambda: True, BlockedFactor),
@@ -22,7 +22,7 @@ WAYS: tuple[tuple[str, Callable[[], bool], Elimination], ...] = (
 
 
 @cache
-def chosen() -> tuple[str, Elimination]:
+def chosen() -> tuple[str, Eliminator]:
     """The first way that is there: its name and who goes it."""
     return next((name, way) for name, there, way in WAYS if there())
 

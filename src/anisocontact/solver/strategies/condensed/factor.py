@@ -42,7 +42,7 @@ class Eliminated(Protocol):
         ...
 
 
-class Elimination(Protocol):
+class Eliminator(Protocol):
     """Who eliminates an interior."""
 
     def __call__(self, matrix: scipy.sparse.csr_array, border: Ints, /) -> Eliminated:

@@ -54,7 +54,7 @@ def reachable() -> bool:
 
 
 class MumpsFactor(Eliminated):
-    """An interior eliminated by MUMPS; arguments as of `Elimination`.
+    """An interior eliminated by MUMPS; arguments as of `Eliminator`.
 
     MUMPS makes S as the last front of one factorisation, which then solves with `A_ii`. LDL^T takes
     0.63 of the memory of LU and, cut into blocks, 0.8 of its time; with whole fronts as much, for

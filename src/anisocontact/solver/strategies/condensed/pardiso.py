@@ -53,7 +53,7 @@ def _libraries() -> Iterator[Path]:
 
 
 class PardisoFactor(Eliminated):
-    """An interior eliminated by Pardiso; arguments as of `Elimination`.
+    """An interior eliminated by Pardiso; arguments as of `Eliminator`.
 
     The Schur complement comes out of the factorisation, of which only a triangle is made. Pardiso
     goes on and factorises it as well, which has to have positive pivots: those of a body that
