@@ -59,6 +59,23 @@ def call_petsc(function: str, *arguments: Any) -> None:
         raise PETSc.Error(code)
 
 
+def pattern_of(matrix: Any) -> tuple[float, int] | None:
+    """What tells whether the pattern of a matrix, or of its copies, has changed; collective.
+
+    Args:
+        matrix: A matrix of PETSc.
+
+    Returns:
+        Its number of entries and one that PETSc counts up where they come to other places; None
+        where PETSc does not say it.
+    """
+    if not has_petsc("MatGetNonzeroState"):
+        return None
+    state = ctypes.c_int64()
+    call_petsc("MatGetNonzeroState", matrix, ctypes.byref(state))
+    return float(matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]), state.value
+
+
 @cache
 def _petsc_library() -> ctypes.CDLL:
     """The library that petsc4py is linked to: a search in it goes on to what it needs."""

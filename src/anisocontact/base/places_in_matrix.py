@@ -11,7 +11,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.base.petsc_calls import call_petsc, has_petsc
+from anisocontact.base.petsc_calls import call_petsc, has_petsc, pattern_of
 
 #: Name of what is left at a matrix to know it again; it goes when the matrix does.
 _MARK = "anisocontact.places"
@@ -41,7 +41,8 @@ class PlacesInMatrix:
 
     def __init__(self, source: Mat) -> None:
         self._source = source
-        self._mark, self._state = object(), -1
+        self._mark = object()
+        self._pattern: tuple[float, int] | None = None
         self._places: _Places | None = None
         self.found = 0
 
@@ -56,10 +57,9 @@ class PlacesInMatrix:
         """
         if out.getType() != PETSc.Mat.Type.SEQAIJ or not out.assembled or not has_petsc(*_NEEDED):
             return False
-        state = ctypes.c_int64()
-        call_petsc("MatGetNonzeroState", out, ctypes.byref(state))
-        if out.getAttr(_MARK) is not self._mark or state.value != self._state:
-            self._mark, self._state = object(), state.value
+        pattern = pattern_of(out)
+        if out.getAttr(_MARK) is not self._mark or pattern != self._pattern:
+            self._mark, self._pattern = object(), pattern
             self.found += 1
             self._places = _places(self._source, out)
             out.setAttr(_MARK, self._mark)

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.petsc_calls import pattern_of
 from anisocontact.solver.strategies.iterative.split import sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
@@ -66,14 +67,19 @@ class CoarseLevel:
         first, last = prolong.getOwnershipRangeColumn()
         columns = PETSc.IS().createStride(last - first, first, 1, prolong.getComm())
         self._lift = prolong.createSubMatrix(patch, columns)
-        self._entries, self._grown = -1.0, False
+        self._grown = False
+        #: Of the last matrix, where contact has been taken from, and of the last product.
+        self._pattern: tuple[float, int] | None = None
+        self._of_product: tuple[float, int] | None = None
         self._block: Mat | None = None
         self._contact: Mat | None = None
         self._matrix: Mat | None = None
         self._make_inverse = inverse
         self._inverse: Inverse | None = None
         self._right, self._correction = prolong.createVecs()
+        self._product: Mat | None = None
         self._bodies, self._other_bodies = self._without_contact(matrix), False
+        self._forget_product()  # it keeps copies of P, and linear bodies need none again
 
     @property
     def single(self) -> bool:
@@ -85,6 +91,11 @@ class CoarseLevel:
         """Take bodies that have changed."""
         self._bodies.destroy()
         self._bodies, self._other_bodies = self._without_contact(matrix), True
+
+    def outgrow(self) -> None:
+        """Take it that the next matrix is a new one with other entries."""
+        self._pattern = None
+        self._forget_product()
 
     def renew(self, matrix: Mat) -> bool:
         """Take the contact of a matrix of the finer level; whether there is an inverse."""
@@ -115,6 +126,7 @@ class CoarseLevel:
 
     def destroy(self) -> None:
         """Give back PETSc's objects."""
+        self._forget_product()
         parts = (self._inverse, self._matrix, self._bodies, self._contact, self._block)
         for part in (*parts, self._lift, self._prolong):
             if part is not None:
@@ -122,9 +134,9 @@ class CoarseLevel:
 
     def _take_contact(self, matrix: Mat) -> None:
         """Set `E^T A_pp E`."""
-        entries = matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]
-        if entries != self._entries:
-            self._entries, self._grown = entries, True
+        pattern = pattern_of(matrix)
+        if pattern is None or pattern != self._pattern:
+            self._pattern, self._grown = pattern, True
             for part in (self._block, self._contact):
                 if part is not None:
                     part.destroy()
@@ -132,11 +144,23 @@ class CoarseLevel:
         self._block = matrix.createSubMatrix(self._patch, self._patch, self._block)
         self._contact = self._block.ptap(self._lift, self._contact)
 
+    def _galerkin(self, matrix: Mat) -> Mat:
+        """`P^T A P`, in the places of the last one while the pattern of A stays."""
+        pattern = pattern_of(matrix)
+        if pattern is None or pattern != self._of_product:
+            self._forget_product()
+        self._of_product = pattern
+        self._product = matrix.ptap(self._prolong, self._product)
+        return self._product
+
+    def _forget_product(self) -> None:
+        if self._product is not None:
+            self._product.destroy()
+        self._product = self._of_product = None
+
     def _without_contact(self, matrix: Mat) -> Mat:
         """G, with a diagonal where neither the bodies nor contact have one."""
-        product = matrix.ptap(self._prolong)
-        whole = product.copy()
-        product.destroy()  # it keeps copies of P
+        whole = self._galerkin(matrix).copy()
         diagonal = np.abs(whole.getDiagonal().array_r)
         comm = matrix.getComm()
         largest = max(comm.tompi4py().allgather(float(diagonal.max(initial=0.0))))

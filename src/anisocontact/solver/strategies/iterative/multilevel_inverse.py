@@ -68,6 +68,8 @@ class MultilevelInverse:
     def renew(self, matrix: Mat, grown: bool, bodies: bool) -> bool:
         """See `Inverse.renew`."""
         self._matrix = matrix
+        if grown:
+            self._coarse.outgrow()
         if bodies:
             self._inside.destroy()
             self._inside = matrix.createSubMatrix(self._interior, self._interior)
