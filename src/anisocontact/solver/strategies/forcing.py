@@ -6,8 +6,8 @@ import numpy as np
 
 from anisocontact.solver.strategies.newton import System
 
-#: Residual of a correction where multipliers follow, over the forces out of balance, and over all.
-_FINE, _FINEST = 1e-5, 1e-13
+#: Residual of a correction over its right-hand side that is asked for at most.
+_FINEST = 1e-13
 #: Forces that a correction may leave, over the smallest ones at work since the increment began.
 _LEFT = 3e-4
 _TINY = float(np.finfo(np.float64).tiny)
@@ -25,10 +25,13 @@ class Forcing:
         tolerance: Residual over the forces at work at which Newton stops.
         rough: Residual of a correction over its right-hand side, far from the solution.
         careful: The same where the last one has not brought the forces nearer to balance.
+        fine: The same where multipliers follow, over the forces out of balance.
     """
 
-    def __init__(self, tolerance: float, rough: float = 1e-2, careful: float = 1e-5) -> None:
-        self.tolerance, self._rough, self._careful = tolerance, rough, careful
+    def __init__(
+        self, tolerance: float, rough: float = 1e-2, careful: float = 1e-5, fine: float = 1e-5
+    ) -> None:
+        self.tolerance, self._rough, self._careful, self._fine = tolerance, rough, careful, fine
         self._before = self._least = np.inf
 
     def begin(self) -> None:
@@ -55,5 +58,7 @@ class Forcing:
         self._before = 0.5 * relative
         if system.contact_term.simultaneous:
             # forces that take violations away are large beside those that are out of balance
-            return max(_FINE * min(system.balance.norm / max(size, _TINY), 1.0), _FINEST)
-        return max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))
+            return max(self._fine * min(system.balance.norm / max(size, _TINY), 1.0), _FINEST)
+        # forces in balance may wait for what is prescribed: a correction is found then, too
+        enough = min(0.1 * self.tolerance / max(relative, _TINY), self._rough)
+        return max(min(rough, relative), enough)

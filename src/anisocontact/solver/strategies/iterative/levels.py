@@ -35,6 +35,8 @@ CHAIN = 3
 NEGLIGIBLE = 1e-6
 #: Krylov iterations over those with a new interpolation at which an old one is given up.
 WORN = 1.5
+#: Krylov iterations more than with the bodies of its tangent with which a correction may be found.
+LAG = 2
 #: Motions of aggregates over the unknowns of the patch from which on they get a further level.
 MANY = 1.0
 #: The same, in themselves: a factor of so few takes less than a level.
@@ -50,11 +52,17 @@ class Levels:
     coarse level are aggregates it is solved by such a cycle in its turn. Where levels do not lead
     to the solution a factor of all unknowns takes their place.
 
+    Bodies that are not linear stay those of an earlier tangent of the increment while corrections
+    are found as fast with them; contact is always that of now.
+
     Args:
         problem: The problem.
         patch: Nodes that contact can couple.
         prefix: Prefix of the options of its parts.
         note: Called with a line when the interpolation is made.
+
+    Attributes:
+        lagging: Whether the bodies are those of an earlier tangent.
     """
 
     def __init__(
@@ -70,13 +78,25 @@ class Levels:
         self._factor: Factor | None = None
         self._rest = problem.new_vector()
         self._bulk: object = None
-        self._fresh = 0
+        self._fresh = self._least = 0
+        self.lagging, self._lags, self._due = False, True, False
         self._worn, self._single = False, True
         self._mixed: MixedResidual | None = None
         self._mixes = problem.linear and problem.layout.unknowns.block == BLOCK
 
+    def begin(self, *, lags: bool = True) -> None:
+        """Take it that an increment begins: what was before it matters no more.
+
+        Args:
+            lags: Whether bodies of an earlier tangent may do.
+        """
+        self._lags, self._due = lags, True
+
     def count(self, iterations: int) -> None:
         """Take the number of Krylov iterations of a correction."""
+        if not self.lagging:
+            self._least = iterations
+        self._due = not self._lags or iterations > self._least + LAG
         if self._fresh == 0:
             self._fresh = iterations
         self._worn = iterations > WORN * max(self._fresh, 10)
@@ -114,10 +134,14 @@ class Levels:
         # what the tangent without contact depends on, beside the state where bodies are not linear
         bulk = self._problem.stabilisation.stiffnesses
         changed = not self._problem.linear or bulk != self._bulk
+        self.lagging = False
         if self._outdated(changed):
             self._build(tangent)
-        elif changed:
-            self._renew(tangent)
+        elif self._due or bulk != self._bulk:
+            if changed:
+                self._renew(tangent)
+        else:
+            self.lagging = changed
         self._bulk = bulk
         if self._mixed is not None:
             self._mixed.take(tangent)

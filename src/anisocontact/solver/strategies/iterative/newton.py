@@ -17,9 +17,13 @@ from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
-#: Residual of a correction over its right-hand side, at most. With 1e-2 linear bodies take as many
-#: iterations as with 1e-4, and a tenth more with 1e-1; bodies at finite strain a twentieth more.
-OF_LINEAR, OF_OTHERS = 1e-2, 1e-4
+#: Residual of a correction over its right-hand side, at most, and over the forces out of balance
+#: where multipliers follow: of linear bodies that supports hold, which take as many iterations as
+#: with those of others, and a tenth more with 1e-1; and of others. At finite strain 1e-2 takes a
+#: twentieth more, and where contact alone holds a body up to 2.6 times as many.
+OF_LINEAR, OF_OTHERS = (1e-2, 1e-5), (1e-4, 1e-8)
+#: Residual over the forces at work beyond which bodies may come to be quite different ones.
+FAR = 0.1
 #: Solutions without convergence after which the log says what else there is.
 TOLD = 3
 
@@ -54,14 +58,14 @@ class IterativeNewton(Newton):
         self.krylov: list[int] = []
         self._note, self._nodal = note, problem
         self._failures = 0
-        rough = OF_LINEAR if problem.linear else OF_OTHERS
-        self._forcing = Forcing(self.snes.getTolerances()[0], rough, rough)
+        self._forcing = self._new_forcing()
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
         self._asked = any(name.startswith("ksp_") for name in given)
         ksp = self.snes.getKSP()
         ksp.setPostSolve(self._count)
         self._levels: Levels | None = None
+        self._lags = True
         if ksp.getPC().getType() == PETSc.PC.Type.PYTHON:
             self._levels = Levels(problem, Patch(problem, steps), prefix, note)
             ksp.getPC().setPythonContext(self._levels)
@@ -72,7 +76,9 @@ class IterativeNewton(Newton):
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
     ) -> NewtonResult:
         """See `Newton.solve`."""
-        self._forcing.begin()
+        self._forcing = self._new_forcing()
+        if self._levels is not None:
+            self._levels.begin(lags=self._lags)
         result = super().solve(x, full_steps, damping)
         if self.snes.getKSP().getConvergedReason() < 0:
             self._failures += 1
@@ -82,6 +88,12 @@ class IterativeNewton(Newton):
                     'if the bodies are held, take the strategy "direct"'
                 )
         return result
+
+    def _new_forcing(self) -> Forcing:
+        """How precise corrections of an increment are."""
+        held = self._nodal.linear and not self._nodal.stabilisation.watches
+        rough, fine = OF_LINEAR if held else OF_OTHERS
+        return Forcing(self.snes.getTolerances()[0], rough, rough, fine)
 
     def _solve_mixed(self, levels: Levels, prefix: str) -> None:
         """Solve for pressures, too, where bodies all but keep their volume."""
@@ -94,6 +106,7 @@ class IterativeNewton(Newton):
             mixed = MixedKrylov(problem, volume, levels, prefix, self._note)
         ksp.setType(PETSc.KSP.Type.PYTHON)
         ksp.setPythonContext(mixed)
+        self._lags = False  # pressures of now need bodies of now
         ksp.getPC().setType(PETSc.PC.Type.NONE)
 
     def close(self) -> None:
@@ -112,6 +125,11 @@ class IterativeNewton(Newton):
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """As of `Newton`, with a factor of all unknowns from where the levels lead nowhere on."""
         result = super()._equilibrium(x)
+        if self._levels is not None and self._levels.lagging and self._exhausted:
+            self._lags = False
+            self._levels.begin(lags=False)
+            again = super()._equilibrium(x)
+            result = replace(again, iterations=result.iterations + again.iterations)
         if self._levels is None or self._asked or not self._exhausted:
             return result
         count = self.krylov[-1]
@@ -132,6 +150,8 @@ class IterativeNewton(Newton):
 
     def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, other: Mat) -> None:
         super()._jacobian(snes, x, matrix, other)
+        if self._levels is not None and self._residuals[-1] > FAR:
+            self._levels.begin(lags=self._lags)
         if self._adapts:
             size = snes.getFunction()[0].norm()
             snes.getKSP().setTolerances(rtol=self._forcing.rtol(self._problem, size))
