@@ -12,6 +12,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
+from anisocontact.base.unreferenced import collect_unreferenced
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -97,6 +98,7 @@ class Problem(ReportedSystem):
         ties: Sequence[Tie] = (),
         cyclic: Sequence[CyclicSymmetry] = (),
     ) -> None:
+        collect_unreferenced()
         connections = Connections(attached, symmetry, coupled, ties, cyclic)
         self._parts = parts = make_parts(model, materials, contacts, connections, stabilised)
         self.model, self.materials = model, dict(materials)
