@@ -19,7 +19,7 @@ def _rows(shift):
 
 
 def _with_entries(one, other):
-    """Two rows in turn with one number of entries: the first with zeros in places of its own."""
+    """The first matrix with small entries in its first row, so that it has as many as the other."""
     missing = other.nnz - one.nnz
     corner = scipy.sparse.coo_array(
         (np.full(missing, 1e-3), (np.zeros(missing, int), np.arange(N - missing, N))), (N, N)

@@ -15,7 +15,7 @@ def collect_unreferenced() -> None:
     """Collect garbage with every 25th problem that the process makes.
 
     Python looks through all that lives long ever more seldom the more of it there is: a script with
-    large lists made 190 problems one after the other, of which it kept none, and had no
+    large lists made less than 240 problems one after the other, kept none of them, and had no
     communicator for the next one.
     """
     if next(_PROBLEMS) % EVERY == 0:

@@ -134,14 +134,12 @@ class Levels:
         # what the tangent without contact depends on, beside the state where bodies are not linear
         bulk = self._problem.stabilisation.stiffnesses
         changed = not self._problem.linear or bulk != self._bulk
-        self.lagging = False
-        if self._outdated(changed):
+        outdated = self._outdated(changed)
+        self.lagging = changed and not (outdated or self._due or bulk != self._bulk)
+        if outdated:
             self._build(tangent)
-        elif self._due or bulk != self._bulk:
-            if changed:
-                self._renew(tangent)
-        else:
-            self.lagging = changed
+        elif changed and not self.lagging:
+            self._renew(tangent)
         self._bulk = bulk
         if self._mixed is not None:
             self._mixed.take(tangent)
