@@ -128,8 +128,7 @@ class IterativeNewton(Newton):
         if self._levels is not None and self._levels.lagging and self._exhausted:
             self._lags = False
             self._levels.begin(lags=False)
-            again = super()._equilibrium(x)
-            result = replace(again, iterations=result.iterations + again.iterations)
+            result = self._again(x, result)
         if self._levels is None or self._asked or not self._exhausted:
             return result
         count = self.krylov[-1]
@@ -139,8 +138,12 @@ class IterativeNewton(Newton):
             f"the Krylov method has not converged in {count} iterations, as with bodies that keep "
             'their volume: all unknowns are factorised from now on, as "direct" does'
         )
-        again = super()._equilibrium(x)
-        return replace(again, iterations=result.iterations + again.iterations)
+        return self._again(x, result)
+
+    def _again(self, x: Vec, before: NewtonResult) -> NewtonResult:
+        """Go on from where the last try has ended, with its iterations counted."""
+        result = super()._equilibrium(x)
+        return replace(result, iterations=before.iterations + result.iterations)
 
     @property
     def _exhausted(self) -> bool:
