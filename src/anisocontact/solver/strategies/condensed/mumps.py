@@ -12,6 +12,7 @@ import scipy
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
+from anisocontact.solver.strategies.binary_scale import binary_scale
 from anisocontact.solver.strategies.condensed.factor import (
     Eliminated,
     aij,
@@ -19,7 +20,6 @@ from anisocontact.solver.strategies.condensed.factor import (
     singular,
     solves,
 )
-from anisocontact.solver.strategies.units import unit
 
 #: MUMPS: what a solution does with the Schur complement, and "the interior alone".
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0
@@ -72,8 +72,8 @@ class MumpsFactor(Eliminated):
         given = aij(matrix)
         # without a search for pivots MUMPS takes those below some 1e-16 for zero, in any units
         stiff = matrix.diagonal()
-        self._unit = unit(float(stiff[stiff > 0.0].min(initial=np.inf)))
-        given.scale(self._unit)
+        self._binary = binary_scale(float(stiff[stiff > 0.0].min(initial=np.inf)))
+        given.scale(self._binary)
         given.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         given.setOption(PETSc.Mat.Option.SPD, True)  # no pivots are looked for
         kind = PETSc.PC.Type.CHOLESKY
@@ -102,7 +102,7 @@ class MumpsFactor(Eliminated):
         right.setUp()
         left = right.duplicate()
         given = right.getDenseArray()
-        given[:] = self._unit * b
+        given[:] = self._binary * b
         given[self._border] = 0.0
         right.assemble()
         self._factor.matSolve(right, left)
@@ -119,7 +119,7 @@ class MumpsFactor(Eliminated):
     def _schur_view(self, count: int) -> Floats:
         """S without a copy, made symmetric to the last bit."""
         _, view = schur_matrix(self._factor, count)
-        view /= self._unit
+        view /= self._binary
         mirror(view)
         return view
 

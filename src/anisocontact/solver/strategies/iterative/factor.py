@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
+from anisocontact.solver.strategies.binary_scale import binary_scale
 from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.iterative.split import set_any
-from anisocontact.solver.strategies.units import unit
 
 #: Options of the solver: of a factor, and where there is no room for one.
 FACTORISED: dict[str, OptionValue] = {
@@ -72,7 +72,7 @@ class Factor:
             note(f"{reason}: it is solved by GMRES with {kind}")
         self._solver = self._new_solver()
         self._right, self._left = matrix.createVecs()
-        self._unit = 1.0
+        self._binary = 1.0
         self._scaled: Mat | None = None
 
     def renew(self, matrix: Mat, grown: bool, bodies: bool) -> bool:
@@ -91,8 +91,8 @@ class Factor:
     def solve(self, right: Vec) -> Vec:
         """Solution for a right-hand side; overwritten by the next call."""
         self._solver.solve(right, self._left)
-        if self._unit != 1.0:
-            self._left.scale(self._unit)
+        if self._binary != 1.0:
+            self._left.scale(self._binary)
         return self._left
 
     def destroy(self) -> None:
@@ -109,11 +109,11 @@ class Factor:
         if self._scaled is not None:
             self._scaled.destroy()
             self._scaled = None
-        self._unit = 1.0 if 1.0 / LARGE < largest < LARGE else unit(largest)
-        if self._unit == 1.0:
+        self._binary = 1.0 if 1.0 / LARGE < largest < LARGE else binary_scale(largest)
+        if self._binary == 1.0:
             return matrix
         self._scaled = matrix.copy()
-        self._scaled.scale(self._unit)
+        self._scaled.scale(self._binary)
         return self._scaled
 
     def _new_solver(self) -> PETSc.KSP:

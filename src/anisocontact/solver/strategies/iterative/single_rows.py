@@ -12,8 +12,8 @@ import scipy
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
+from anisocontact.solver.strategies.binary_scale import binary_scale
 from anisocontact.solver.strategies.iterative.cycle import residual
-from anisocontact.solver.strategies.units import unit
 
 Singles = npt.NDArray[np.float32]
 
@@ -45,12 +45,12 @@ class InteriorRows:
         self._own = last - first
         self.here: Ints = interior.getIndices() - first
         self.diagonal: Floats = matrix.getDiagonal().array_r[self.here]
-        self._unit = unit(float(np.abs(self.diagonal).max(initial=0.0)))
+        self._binary = binary_scale(float(np.abs(self.diagonal).max(initial=0.0)))
         starts, columns, blocks = [np.zeros(1, dtype=np.int32)], [], []
         for part in _blocks(matrix, self.here):
             starts.append(starts[-1][-1] + part.indptr[1:])
             columns.append(part.indices)
-            entries = self._unit * part.data.transpose(0, 2, 1)
+            entries = self._binary * part.data.transpose(0, 2, 1)
             blocks.append(entries.astype(np.float32).reshape(-1))
         self._starts = np.concatenate(starts).astype(np.int32)
         self._blocks = np.concatenate([*blocks, np.zeros(_PAST, dtype=np.float32)])
@@ -68,7 +68,7 @@ class InteriorRows:
     def times(self, x: Vec) -> Singles:
         """These rows times all unknowns, (m,)."""
         self._gather.scatter(x, self._beside)
-        back = 1.0 / self._unit
+        back = 1.0 / self._binary
         np.multiply(x.array_r, back, out=self._x[: self._own], casting="same_kind")
         np.multiply(self._beside.array_r, back, out=self._x[self._own :], casting="same_kind")
         found: Singles = _core.multiply_block_rows(
