@@ -70,6 +70,27 @@ def mutated(draw: st.DrawFn) -> dict[str, Any]:
     return data
 
 
+@pytest.mark.parametrize("given", [1e300, 1e60, 1e-60, 5e-324])
+@pytest.mark.filterwarnings("error")
+def test_numbers_that_cannot_be_computed_with(given):
+    """Requirement: each number whose products overflow or vanish is a line that names it; a list
+    counts by its largest number."""
+    tables = tomllib.loads(CASE)
+    for place in PLACES:
+        data = copy.deepcopy(tables)
+        parent: Any = data
+        for key in place[:-1]:
+            parent = parent[key]
+        if not isinstance(parent[place[-1]], int | float):
+            continue
+        parent[place[-1]] = given
+        if given < 1.0 and isinstance(parent, list) and max(parent) >= 1e-50:
+            continue
+        with pytest.raises(CaseError) as caught:
+            validate(data)
+        assert place[0] in str(caught.value)
+
+
 @settings(max_examples=400, deadline=None)
 @given(data=mutated())
 def test_mutated_tables(data):

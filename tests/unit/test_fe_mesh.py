@@ -316,6 +316,16 @@ def test_unsound_cells_are_refused():
     mesh.points[0] += 1e8 * (mesh.points[0] - mesh.points[mesh.cells[0]].mean(axis=0))
     with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
         check_cells(mesh)
+    from anisocontact.mesh import Body, BoxSpec
+
+    needle = Body("a", BoxSpec((0, 0, 0), (1, 1, 2e7), (1, 1, 1)))  # the same with right angles
+    with pytest.raises(InputError, match="body 'a': 1 of 1 cells are flat or inverted"):
+        check_cells(needle.arrays())
+    check_cells(Body("a", BoxSpec((0, 0, 0), (1, 1, 5e6), (1, 1, 1))).arrays())
+    mesh = two_tetrahedra(1)
+    mesh.points[:] *= 1e60
+    with pytest.raises(InputError, match=r"nodes are up to \S*e\+60 from the origin, must be from"):
+        check_cells(mesh)
     mesh = two_tetrahedra(2)
     # The corners stay, the middle of an edge goes through the opposite one.
     edge = next(n for n in mesh.cells[0, 4:] if n not in mesh.cells[1])

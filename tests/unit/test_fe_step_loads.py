@@ -12,7 +12,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
-from anisocontact.solver import Solver, Step, Turn
+from anisocontact.mesh import Placement
+from anisocontact.solver import Cylindrical, Solver, Step, Turn
 
 NOTHING = {"x": 0.0, "y": 0.0, "z": 0.0}
 CASE = """
@@ -44,6 +45,14 @@ LINE
             "step 'a'.body_force.b.x: nan given, needs a finite number",
         ),
         (
+            {"force": {"b.top": {"x": -1e60}}},
+            "step 'a'.force.b.top.x: -1e+60 given, must be 0, or from 1e-50 to 1e+50 in size",
+        ),
+        (
+            {"duration": 1e-60},
+            "step 'a'.duration: 1e-60 given, must be from 1e-50 to 1e+50 in size",
+        ),
+        (
             {"pressure": {"b.top": "high"}},
             "pressure.b.top: 'high' given, a number or Course needed",
         ),
@@ -68,6 +77,18 @@ def test_wrong_load_is_one_line(values, line):
         (
             lambda: Turn((0, 0, 1), 1.0, move=(0, 0)),
             "move: (0, 0) given, three finite numbers are needed",
+        ),
+        (
+            lambda: Cylindrical({"radial": 1e60}),
+            "radial: 1e+60 given, must be 0, or from 1e-50 to 1e+50 in size",
+        ),
+        (
+            lambda: Turn((0, 0, 1), 1.0, move=(0, 1e60, 0)),
+            "move: (0, 1e+60, 0) given, must be 0, or from 1e-50 to 1e+50 in size",
+        ),
+        (
+            lambda: Placement(scale=1e60),
+            "scale: 1e+60 given, must be from 1e-50 to 1e+50 in size",
         ),
     ],
 )

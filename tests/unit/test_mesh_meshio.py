@@ -88,6 +88,25 @@ def test_numbers_of_another_name_are_said(tmp_path):
     assert not named.notes
 
 
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ([1.0, 2.5], "of which 1 of 2 values are no whole numbers, the first 2.5; give whole"),
+        ([np.nan, np.inf], "of which 2 of 2 values are no whole numbers, the first nan"),
+    ],
+)
+def test_numbers_of_bodies_are_whole(tmp_path, numbers, said):
+    """Requirement: two bodies whose numbers have the same whole part are not one body."""
+    data = {"MaterialIds": [np.array(numbers)]}
+    mesh = meshio.Mesh(POINTS, [("hexahedron", HEXAHEDRA)], cell_data=data)
+    mesh.write(tmp_path / "cubes.vtu")
+    with pytest.raises(InputError, match=f"cells are numbered by 'MaterialIds', {said}"):
+        file_arrays(tmp_path / "cubes.vtu")
+    mesh.cell_data = {"MaterialIds": [np.array([2.0, 3.0])]}  # whole numbers written as floats
+    mesh.write(tmp_path / "cubes.vtu")
+    assert list(file_arrays(tmp_path / "cubes.vtu").bodies) == ["body2", "body3"]
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_exodus_with_sets_of_nodes(tmp_path):
     mesh = meshio.Mesh(

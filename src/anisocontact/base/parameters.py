@@ -14,6 +14,11 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.base.words import meant
 
+#: Least and largest size of numbers that are not 0: products of six of them, as squares of volumes,
+#: are numbers of double precision.
+LEAST, MOST = 1e-50, 1e50
+#: What is said of others.
+RANGE = f"from {LEAST:g} to {MOST:g} in size"
 _SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}
 
 
@@ -249,7 +254,8 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
         The numbers; of a choice its place among the choices.
 
     Raises:
-        InputError: Not of the parameter's form, not finite or out of its bound.
+        InputError: Not of the parameter's form, not finite, out of its bound, or too large or small
+            to compute with.
 
     Example:
         >>> check(Parameter("radius", "scalar", "length", "radius", "positive"), 2)
@@ -264,7 +270,22 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
     if not all(math.isfinite(v) for v in numbers):
         raise InputError(f"{reprlib.repr(given)} given, finite numbers are needed", field=field)
     _check_bound(p, numbers, given, field)
+    for together in (numbers[:3], numbers[3:]) if p.kind == "axis" else (numbers,):
+        if out_of_range(*together):
+            allowed = RANGE if p.bound in ("positive", "nonzero") else f"0, or {RANGE}"
+            raise InputError(f"{reprlib.repr(given)} given, must be {allowed}", field=field)
     return numbers
+
+
+def out_of_range(*numbers: float) -> bool:
+    """Whether numbers are too large to compute with, or all of them too small and not 0.
+
+    Example:
+        >>> out_of_range(1e60), out_of_range(1e-60), out_of_range(1e-60, 1.0), out_of_range(0.0)
+        (True, True, False, False)
+    """
+    size = max(map(abs, numbers), default=0.0)
+    return size != 0.0 and not LEAST <= size <= MOST
 
 
 def _numbers(p: Parameter, given: object, field: str) -> list[float]:

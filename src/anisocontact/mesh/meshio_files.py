@@ -187,11 +187,29 @@ def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
             continue
         dim = 3 if block.type in SOLIDS else LOWER.get(block.type, 2)
         word = ("edge", "surface", "body")[max(dim - of_bodies, -2) + 2]
-        numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).ravel().tolist()
+        numbers = _whole(mesh.cell_data[key][k], key)
         yield [
             of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == of_bodies else "")
             for n in numbers
         ]
+
+
+def _whole(given: Any, name: str) -> list[int]:
+    """Numbers of bodies or surfaces, which some formats keep as floats.
+
+    Raises:
+        InputError: One of them is not whole: the array is another quantity, or damaged.
+    """
+    values = np.asarray(given).ravel()
+    with np.errstate(invalid="ignore"):
+        numbers = values.astype(np.int64)
+    wrong = np.flatnonzero(numbers != values)
+    if len(wrong):
+        raise InputError(
+            f"cells are numbered by {name!r}, of which {len(wrong)} of {len(values)} values are no "
+            f"whole numbers, the first {values[wrong[0]]:g}; give whole ones, or rename the array"
+        )
+    return numbers.tolist()
 
 
 def _unread(mesh: Any, solids: Mapping[str, str]) -> Iterator[str]:

@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.registry import Parameter
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
@@ -121,6 +122,8 @@ class Placement:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.scale) and self.scale > 0.0):
             raise InputError(f"{self.scale!r} given, must be > 0", "scale")
+        if out_of_range(self.scale):
+            raise InputError(f"{self.scale!r} given, must be {RANGE}", "scale")
         check_vector("move", self.move)
 
     def apply(self, mesh: MeshArrays) -> MeshArrays:
@@ -148,12 +151,13 @@ class Placement:
 
 
 def check_vector(name: str, given: Sequence[float]) -> None:
-    """Refuse what is not three finite numbers."""
+    """Refuse what is not three finite numbers that can be computed with."""
     try:
         registry.check(Parameter(name, "vector", "1", ""), given, name)
-    except InputError:
+    except InputError as error:
         text = f"{given!r} given, three finite numbers are needed"
-        raise InputError(text, name) from None
+        said = error.said if error.said.endswith(RANGE) else text
+        raise InputError(said, name) from None
 
 
 #: Nothing scaled, turned or moved.

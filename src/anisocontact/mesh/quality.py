@@ -9,6 +9,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import curved_gradients, middle_nodes
+from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
 
@@ -32,8 +33,9 @@ _CORNERS = {
 }
 #: Volume at a corner over the largest in the body, below which a cell is flat.
 FLAT = 1e-12
-#: Scaled Jacobian of a needle ten million times as long as it is thick: the angles at its tip are
-#: zero but for rounding, whatever its volume.
+#: Scaled Jacobian of a needle ten million times as long as it is thick, and the square of the
+#: shortest over the longest edge of one with right angles: its stiffness across leaves nothing of
+#: that along it but rounding, whatever its volume.
 NEEDLE = 1e-14
 _AT_ONCE = 2000
 
@@ -48,6 +50,9 @@ def check_cells(mesh: MeshArrays) -> None:
     Raises:
         InputError: Says what is wrong and how often.
     """
+    extent = max(mesh.comm.allgather(float(np.abs(mesh.points).max(initial=0.0))))
+    if out_of_range(extent):
+        raise InputError(f"nodes are up to {extent:g} from the origin, must be {RANGE}")
     # Sizes whose volumes overflow or underflow count as flat.
     with np.errstate(all="ignore"):
         least, most, shaped = _sizes(mesh.with_points())
@@ -93,6 +98,13 @@ def _shaped(mesh: MeshArrays, volumes: Floats) -> Floats:
     return np.asarray((volumes / size).min(axis=1))
 
 
+def _slender(mesh: MeshArrays) -> Floats:
+    """Square of the shortest over the longest arm at the corners of each cell, (cells,)."""
+    points = mesh.points[mesh.cells[:, _CORNERS[mesh.cell]]]
+    lengths = np.linalg.norm(points[:, :, 1:] - points[:, :, :1], axis=3).reshape(len(points), -1)
+    return np.asarray((lengths.min(axis=1) / lengths.max(axis=1)) ** 2)
+
+
 def _sizes(mesh: MeshArrays) -> tuple[Floats, Floats, Floats]:
     """Least and largest volume of each cell, by size, and its scaled Jacobian, (cells,) each."""
     found = [np.empty((3, 0))]
@@ -100,7 +112,7 @@ def _sizes(mesh: MeshArrays) -> tuple[Floats, Floats, Floats]:
     for begin in range(0, len(mesh.cells), _AT_ONCE):
         some = replace(mesh, cells=mesh.cells[begin : begin + _AT_ONCE])
         volumes = _corner_volumes(some)
-        shaped = _shaped(some, volumes)
+        shaped = np.minimum(_shaped(some, volumes), _slender(some))
         if mesh.degree == 2:
             volumes = np.hstack([volumes, _inner_volumes(some)])
         found.append(np.stack([volumes.min(axis=1), np.abs(volumes).max(axis=1), shaped]))

@@ -16,6 +16,8 @@ from anisocontact.results.files import LOCK
 
 #: What file systems answer that have no locks, some of those over a network.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)
+#: What a folder may lack for a while, whose run goes on later: no fault of its name.
+_LACKING = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.ENOMEM, errno.EMFILE, errno.ENFILE)
 
 
 @contextmanager
@@ -30,16 +32,16 @@ def locked(folder: Path, comm: Any = None) -> Iterator[str]:
         A warning where the file system has no locks; empty where the folder is locked.
 
     Raises:
-        InputError: Another process works in the folder.
+        InputError: Another process works in the folder, or no file can be made there.
     """
     first = comm is None or comm.rank == 0
     made = [path for path in (folder, *folder.parents) if not path.exists()] if first else []
-    number, busy, warning = _locked(folder) if first else (None, "", "")
+    number, refused, warning = _locked(folder) if first else (None, "", "")
     if comm is not None:
-        busy, warning = comm.bcast((busy, warning))
-    if busy:
-        raise InputError(busy)
+        refused, warning = comm.bcast((refused, warning))
     try:
+        if refused:
+            raise InputError(refused)
         yield warning
     finally:
         if number is not None:
@@ -52,13 +54,16 @@ def locked(folder: Path, comm: Any = None) -> Iterator[str]:
 
 
 def _locked(folder: Path) -> tuple[int | None, str, str]:
-    """Descriptor of the locked file, who has it if another one has, and a warning."""
+    """Descriptor of the locked file, why the folder is refused, and a warning."""
     while True:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             number = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-        except OSError:  # who writes the results says what is wrong
-            return None, "", ""
+        except OSError as error:
+            if error.errno in _LACKING:  # who writes the results says what is wrong
+                return None, "", ""
+            text = f"results folder '{folder}' cannot be written: {error.strerror}; "
+            return None, text + "name another one with -o", ""
         try:
             fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

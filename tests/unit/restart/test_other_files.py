@@ -154,6 +154,45 @@ def test_a_folder_that_was_made_for_nothing_goes_again(tmp_path: Path) -> None:
     assert [path.name for path in (tmp_path / "a").iterdir()] == ["mine"]
 
 
+@pytest.mark.parametrize("command", ["run", "trace"])
+def test_a_folder_in_which_no_file_can_be_made(
+    case: Path, tmp_path: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Requirement: a name that allows no results is the user's mistake, said before anything is
+    solved; so where the system has permission by name, and yet makes nothing."""
+    sledge = Path(__file__).parents[3] / "examples" / "point" / "sledge.toml"
+    file = str(case if command == "run" else sledge)
+    assert main([command, file, "-o", "/proc/results/1"]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.splitlines() == [
+        "error: results folder '/proc/results/1' cannot be written: No such file or directory; "
+        "name another one with -o"
+    ]
+
+
+@pytest.mark.parametrize("number", [errno.EACCES, errno.ENOSPC])
+def test_what_a_disk_lacks_is_no_fault_of_the_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    """Requirement: on a full disk the writer says what is full, and the run is one that stopped."""
+
+    def failing(*arguments: object) -> int:
+        raise OSError(number, os.strerror(number), str(tmp_path))
+
+    monkeypatch.setattr("anisocontact.results.lock.os.open", failing)
+    if number == errno.ENOSPC:
+        with locked(tmp_path / "a") as warning:
+            assert warning == ""
+    else:
+        with (
+            pytest.raises(InputError, match="/a' cannot be written: Permission denied; name"),
+            locked(tmp_path / "a"),
+        ):
+            pytest.fail("it is not locked")
+    assert not (tmp_path / "a").exists()
+
+
 def test_one_after_the_other_from_many(tmp_path: Path) -> None:
     """However runs follow each other, there is never more than one: the file comes and goes."""
     inside, most, got = [0], [0], [0]

@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import check_vector
 
@@ -56,6 +57,8 @@ class Cylindrical:
             plain = value is None or isinstance(value, Course)
             if not plain and not (isinstance(value, int | float) and math.isfinite(value)):
                 raise InputError(f"{value!r} given, needs a finite number", name)
+            if isinstance(value, int | float) and out_of_range(value):
+                raise InputError(f"{value!r} given, must be 0, or {RANGE}", name)
         check_vector("axis", self.axis)
         check_vector("point", self.point)
         if not np.any(self.axis):

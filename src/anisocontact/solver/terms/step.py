@@ -9,6 +9,7 @@ from typing import Any
 
 from anisocontact.base.course import Course, way_cut_off
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian
@@ -97,6 +98,8 @@ class Step:
             raise self._error("increments", f"{self.increments} given, {allowed}")
         if not (math.isfinite(self.duration) and self.duration > 0.0):
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
+        if out_of_range(self.duration):
+            raise self._error("duration", f"{self.duration!r} given, must be {RANGE}")
         for kind in ("displacement", "anchor", *_FORCES):
             self._check_vectors(kind)
         for body, components in self._by_component("load"):
@@ -191,6 +194,8 @@ class Step:
             return
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise self._error(where, f"{value!r} given, needs a finite number")
+        if out_of_range(value):
+            raise self._error(where, f"{value!r} given, must be 0, or {RANGE}")
 
     def _error(self, where: str, message: str) -> InputError:
         return InputError(message, f"step {self.name!r}.{where}")
