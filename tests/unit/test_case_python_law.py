@@ -195,6 +195,20 @@ def test_restart_with_another_law(tmp_path, capsys):
     )
 
 
+def test_a_law_that_fails_is_no_run_to_go_on_with(tmp_path, capsys):
+    """What helps is another law, with which no run goes on: none is offered, and its error is the
+    one line."""
+    path = smooth(tmp_path)
+    law = SMOOTH.replace("internal = 0", "internal, calls = 0, 0")
+    failing = "Smooth.calls += 1\n        n = len(kinematics.pressure) // (Smooth.calls < 6)"
+    law = law.replace("n = len(kinematics.pressure)", failing)
+    (tmp_path / "smooth.py").write_text(law, encoding="utf-8")
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 3
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "the law Smooth failed: smooth.py, line 10: ZeroDivisionError" in line
+    assert (tmp_path / "out" / "checkpoint.npz").is_file()
+
+
 def test_restart_with_another_file_that_the_law_imports(tmp_path, capsys):
     """A law is what its file imports, too: what lies beside it and has changed is named."""
     (tmp_path / "size.py").write_text("from unit import ONE\n", encoding="utf-8")

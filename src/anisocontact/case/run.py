@@ -6,7 +6,7 @@ import signal
 import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.machine import lack
@@ -102,17 +102,31 @@ def run(
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
     request = _StopRequest(listener)
     with on_signals(request.by_signal):
-        _run_and_close(built, writer, request, facts)
+        curable = _run_and_close(built, writer, request, facts)
     summary = writer.summary
     status, message = summary["status"], summary["message"]
-    goes_on = (writer.folder / NAME).is_file()
+    goes_on = curable and (writer.folder / NAME).is_file()
     return Outcome(status, message, writer.folder, tuple(summary["warnings"]), goes_on)
+
+
+class _End(NamedTuple):
+    """How a run ended.
+
+    Attributes:
+        status: "done" or "stopped".
+        message: Why it stopped.
+        curable: Whether what may change before a run goes on can help.
+    """
+
+    status: str
+    message: str
+    curable: bool = True
 
 
 def _run_and_close(
     built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
-) -> None:
-    """Run the steps and close the results, however it ends.
+) -> bool:
+    """Run the steps and close the results, however it ends; whether the run can go on.
 
     Raises:
         RunError: Something unforeseen happened.
@@ -121,25 +135,26 @@ def _run_and_close(
     """
     together = built.problem.together
     try:
-        status, message = _solve(built, writer, request, facts)
+        end = _solve(built, writer, request, facts)
     except KeyboardInterrupt:
-        status, message = "stopped", "interrupted"
+        end = _End("stopped", "interrupted")
         if together.met() is None:
-            writer.abandon(message)
+            writer.abandon(end.message)
             raise
     except Exception as error:
         lacking = lack(error)
         text = one_line(f"{type(error).__name__}: {error}")
-        status, message = "stopped", str(lacking or f"internal error: {text}")
+        end = _End("stopped", str(lacking or f"internal error: {text}"))
         if together.met() is None:
-            writer.abandon(message, traceback.format_exc())
+            writer.abandon(end.message, traceback.format_exc())
             raise lacking or RunError(f"{text}; {_details(writer)}") from error
         for line in traceback.format_exc().splitlines():
             writer.log(line)
         if lacking is None:
-            writer.close(status, message)
+            writer.close(end.status, end.message)
             raise RunError(f"{text}; {_details(writer)}") from error
-    writer.close(status, message)
+    writer.close(end.status, end.message)
+    return end.curable
 
 
 def _read_once(built: Built) -> dict[str, str]:
@@ -215,21 +230,17 @@ class _Reports:
             self.writer.log(said)
 
 
-def _solve(
-    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
-) -> tuple[str, str]:
-    """Run the steps, and keep the last accepted increment; status and message."""
+def _solve(built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]) -> _End:
+    """Run the steps, and keep the last accepted increment."""
     try:
         ended = _increments(built, writer, request, facts)
         writer.keep_last()
     except WriteError as error:
-        return "stopped", str(error)
+        return _End("stopped", str(error))
     return ended
 
 
-def _increments(
-    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
-) -> tuple[str, str]:
+def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]) -> _End:
     reports = _Reports(writer, request)
 
     def keep() -> None:
@@ -241,7 +252,7 @@ def _increments(
     try:
         keep()
         if comm.allreduce(bool(request.why())):
-            return "stopped", request.why()
+            return _End("stopped", request.why())
         for accepted in built.solver.run(
             reports.iteration, reports.cut, writer.log, reports.warning
         ):
@@ -249,18 +260,18 @@ def _increments(
             keep()
             reports.accepted(accepted)
             if comm.allreduce(bool(request.why())):
-                where = f"step {accepted.step!r}, increment {accepted.increment}"
-                return "stopped", f"{request.why() or 'interrupted'} after {where}"
+                where = f"step {accepted.step!r}, increment {accepted.increment}{_part(accepted)}"
+                return _End("stopped", f"{request.why() or 'interrupted'} after {where}")
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
         writer.keep_failed(stop.failed)
-        return "stopped", str(stop)
+        return _End("stopped", str(stop))
     except InputError as error:  # of a law in Python, or a mistake that shows where a step begins
         writer.log(f"stopped: {error}")
         writer.keep_failed(error.failed)
-        return "stopped", str(error)
-    return "done", ""
+        return _End("stopped", str(error), curable=not built.solver.place.begun)
+    return _End("done", "")
 
 
 def _iteration_line(progress: Progress) -> str:
@@ -274,12 +285,16 @@ def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
         f"{points_text(contact['points'])}  force {_force_text(contact['force'])}"
         for contact in numbers["contacts"]
     )
-    part = "" if accepted.done == 1.0 else f" ({accepted.done:.4g} of it)"
     return (
-        f"{accepted.step} {accepted.increment}{part}  {accepted.iterations} iterations  "
+        f"{accepted.step} {accepted.increment}{_part(accepted)}  {accepted.iterations} iterations  "
         f"residual {accepted.residuals[-1]:.1e}  {contacts}"
         + (f"  ends: {accepted.event}" if accepted.event else "")
     )
+
+
+def _part(accepted: Accepted) -> str:
+    """Up to which share of an increment a part of it has come; empty at its end."""
+    return "" if accepted.done == 1.0 else f" ({accepted.done:.4g} of it)"
 
 
 def ran_off_lines(accepted: Accepted) -> list[str]:

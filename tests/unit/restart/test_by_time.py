@@ -15,6 +15,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import load
 from anisocontact.case.build import build
+from anisocontact.case.run import Listener, run
 from anisocontact.cli import main
 from anisocontact.results import checkpoint, checkpoint_times
 from anisocontact.results.files import Disk, WriteError
@@ -48,6 +49,32 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     monkeypatch.setattr(checkpoint_times, "keep_checkpoint", kept)
     return numbers
+
+
+class Gone(Listener):
+    """Goes behind some accepted parts."""
+
+    def __init__(self, parts: int) -> None:
+        self.parts = parts
+
+    def accepted(self, accepted: Any, summary: Any) -> None:
+        self.parts -= 1
+
+    def lost(self) -> str:
+        return "nobody listens" if self.parts <= 0 else ""
+
+
+@pytest.mark.parametrize(
+    ("parts", "where"),
+    [(1, "increment 1 (0.25 of it)"), (3, "increment 1 (0.75 of it)"), (8, "increment 2")],
+)
+def test_where_a_run_stopped_is_told_to_the_part(case, parts, where):
+    """Requirement: an increment of which a part is done is not said to be done."""
+    text = case.read_text(encoding="utf-8")
+    case.write_text(text.replace("[solver]", "[solver]\nlargest_increment = 0.25"), "utf-8")
+    outcome = run(build(load(case)), case.parent / "out", Gone(parts))
+    assert outcome.message == f"nobody listens after step 'press', {where}"
+    assert outcome.goes_on
 
 
 @pytest.mark.parametrize(
