@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody
@@ -36,7 +36,7 @@ class FreeBody:
         springs: Stiffness of springs and elastic supports in them, (k, k), force/length; None for a
             body without, of which no face follows a reference point either.
         least: Stiffness that counts as none, force/length.
-        nodes: Nodes of this rank that stabilisation acts on.
+        nodes: Nodes of this rank that stabilisation acts on, see `act_on`.
         count: Their number over all ranks.
         stiffness: Of stabilisation at each of them, force/length.
         load: Norm of the sum of all loads on it, force.
@@ -54,20 +54,34 @@ class FreeBody:
     least: float
     nodes: Ints = field(init=False)
     count: int = field(init=False)
+    _touchable: Ints = field(init=False)
     stiffness: float = 0.0
     load: float = 0.0
     pushed: Floats = field(default_factory=lambda: np.zeros(0))
     trusted: bool = False
 
     def __post_init__(self) -> None:
+        sides = [self._within(contact.nodes_of_groups[:1]) for contact in self.contacts]
+        slave = np.unique(np.concatenate(sides))
+        if not self.contacts[0].space.mesh.comm.allreduce(len(slave)):
+            sides = [self._within(contact.nodes_of_groups[1:]) for contact in self.contacts]
+        self._touchable = np.unique(np.concatenate(sides))
         self.act_on(None)
 
     def act_on(self, where: Flags | None) -> None:
-        """Let stabilisation act on some of the nodes alone, all if None; flags of nodes."""
-        self.nodes, self.count = self.body.nodes, self.body.count
+        """Let stabilisation act where contacts do, on some of the nodes alone, flags of nodes.
+
+        That is on its slave nodes, or on those of masters where it has none: a body so comes to
+        rest on the same way whichever unknowns a strategy keeps.
+        """
+        self.nodes = self._touchable
         if where is not None:  # on one process
             self.nodes = self.nodes[where[self.nodes]]
-            self.count = max(len(self.nodes), 1)
+        self.count = max(self.contacts[0].space.mesh.comm.allreduce(len(self.nodes)), 1)
+
+    def _within(self, groups: Sequence[Locals]) -> Ints:
+        """Nodes of groups that are its own and of this rank."""
+        return np.intersect1d(np.concatenate([np.zeros(0, np.int32), *groups]), self.body.nodes)
 
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.

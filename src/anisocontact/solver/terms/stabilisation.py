@@ -1,9 +1,9 @@
 """Bodies that only contact can hold: kept in reach until it does.
 
-Springs of equal stiffness c at the nodes of such a body pull it to where it was. Every equilibrium
-becomes the anchor of the next one, and c fades as soon as the body is touched, until the springs
-carry next to nothing: the iteration of the proximal point [Rockafellar 1976]. So what is accepted
-is the equilibrium without springs.
+Springs of equal stiffness c at the nodes of such a body that can touch pull it to where it was.
+Every equilibrium becomes the anchor of the next one, and c fades as soon as the body is touched,
+until the springs carry next to nothing: the iteration of the proximal point [Rockafellar 1976]. So
+what is accepted is the equilibrium without springs.
 
 A body that sticks where an increment begins needs none as long as contact holds all its motions:
 the first attempt goes without, and those with springs follow where it fails.
