@@ -57,6 +57,11 @@ WRONG = [
     ("increments = 4", "increments = 4.5", "step[1].increments", "whole"),
     ("x = 0.02", 'x = "far"', 'step[1].displacement."block.top".x', "'far' given"),
     ("x = 0.02", "u = 0.02", 'step[1].displacement."block.top".u', "allowed: x, y, z"),
+    ("[[contact]]", "[[contact]]\nphysical_penalty = 1", "contact[0].physical_penalty", "true"),
+    ("normal = { penalty = 1e4 }", "physical_penalty = true", "contact[0].physical_penalty",
+     "without the stiffness"),
+    ("[[contact]]", '[[contact]]\nmethod = "augmented"\nphysical_penalty = true',
+     "contact[0].physical_penalty", "no layer gives way"),
     ("every = 3", "every = -3", "output.every", "> 0"),
     ("every = 3", "every = 3\ntimes = [-1]", "output.times[0]", ">= 0"),
     # words and tables

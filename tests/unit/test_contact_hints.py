@@ -294,6 +294,9 @@ def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     (said,) = (line for line in _summary(tmp_path, text)["warnings"] if "penetration" in line)
     assert "the penetration was up to 9% of the 0.006 that the bodies came towards each" in said
     assert "penalty" in said and "augmented" in said
+    assert said.endswith("; where it is the compression of a soft layer: physical_penalty = true")
+    lined = text.replace("[[contact]]", "[[contact]]\nphysical_penalty = true")
+    assert not any("penetration" in line for line in _summary(tmp_path, lined)["warnings"])
     text = BLOCK.format(gap=gap, penalty=1e6, way=-gap - 0.006)
     assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])
 

@@ -108,6 +108,22 @@ def test_warning_says_the_worst_of_the_run(tmp_path, case_text):
     assert "was up to 15% of the facet size, at time 1;" in said
 
 
+def test_a_layer_between_the_surfaces_is_no_penetration(tmp_path, case_text):
+    """Requirement: who says that the penalty is the stiffness of a lining hears of no penetration,
+    and the force is that of springs in series, penalty and bar, without a contraction.
+
+    Source: 1/k = 1/20 + 0.5/1000 over the unit area. Tolerance: that of Newton's method.
+    """
+    text = case_text.replace("{ penalty = 1e4 }", "{ penalty = 20.0 }\nphysical_penalty = true")
+    text = text.replace("nu = 0.3", "nu = 0.0").replace("z = -0.01", "z = -0.05")
+    (tmp_path / "case.toml").write_text(text)
+    done = run_case(tmp_path / "case.toml", tmp_path / "out", pictures=False)
+    done.writer.close("done")
+    assert not [line for line in done.writer.summary["warnings"] if "penetration" in line]
+    pressed = done.writer.summary["contacts"][0]["force"][2]
+    assert pressed == pytest.approx(0.05 / (1.0 / 20.0 + 0.5 / 1000.0), rel=1e-8)
+
+
 @pytest.mark.parametrize("strategy", ["direct", "condensed"])
 def test_summary_says_what_is_out_of_balance(tmp_path, case_text, strategy):
     """A tolerance that accepts what is no equilibrium is a warning of the summary as well.

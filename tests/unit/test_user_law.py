@@ -18,10 +18,11 @@ from anisocontact.bulk import (
     PointState,
     UserEnergy,
     UserLaw,
+    UserStress,
     user_material,
 )
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import Problem, Solver, Step, StoppedError
 
 ONE = np.eye(9).reshape(3, 3, 3, 3)
 
@@ -133,6 +134,27 @@ def test_stress_at_rest_is_told() -> None:
     }
     (said,) = Problem(build_box(boxes), materials).check([])
     assert said.startswith("body 'a': there is stress in it where it is not strained, as much as a")
+
+
+def test_cells_that_a_stress_at_rest_turns_inside_out() -> None:
+    """Requirement: a stop says what was told at the start where it is the cause, so that nobody
+    looks for it in the mesh; one of a law without it does not."""
+    model = build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+
+    def stopped(stress: float) -> str:
+        eye = ufl.Identity(3)
+        law = UserStress(lambda F: F - ufl.inv(F).T + stress * eye, young=3.0)
+        held = {"a.bottom": dict.fromkeys("xyz", 0.0), "a.top": {"z": 0.1 if stress else -1.5}}
+        with pytest.raises(StoppedError) as caught:
+            list(Solver(Problem(model, {"a": law}), [Step("hold", 1, held)]).run(on_note=str))
+        return str(caught.value)
+
+    cause = "body 'a': there is stress in it where it is not strained"
+    said, other = stopped(30.0), stopped(0.0)
+    assert "inverted" in said
+    assert cause in said
+    assert "inverted" in other
+    assert cause not in other
 
 
 def _spring(gradient: Any) -> Any:

@@ -15,6 +15,8 @@ from anisocontact.mesh import Model
 
 #: Strain that makes as much stress as there is at rest from which on it is told.
 _FELT = 1e-6
+#: What is said of such a body.
+STRESSED = "there is stress in it where it is not strained"
 
 
 def doubtful_materials(
@@ -53,8 +55,7 @@ def stressed_bodies(model: Model, bulk: NonlinearBulk) -> list[str]:
         pushes, stiff = np.max(model.mesh.comm.allgather(own), axis=0)
         if pushes > _FELT * stiff:
             said.append(
-                f"body {name!r}: there is stress in it where it is not strained, as much as a "
-                f"strain of about {pushes / stiff:.2g} makes: its energy is not least, or its "
-                "stress not zero, at F = I"
+                f"body {name!r}: {STRESSED}, as much as a strain of about {pushes / stiff:.2g} "
+                "makes: its energy is not least, or its stress not zero, at F = I"
             )
     return said

@@ -178,6 +178,13 @@ def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
         yield InputError("given without adjust = true", field=f"{place}.adjust_gap")
     if contact.adjust and contact.self_contact:
         yield InputError("given with self_contact, which has no adjust", field=f"{place}.adjust")
+    if contact.physical_penalty:
+        if contact.normal.parameters().get("penalty", "auto") == "auto":
+            text = "given without the stiffness of the layer, normal.penalty"
+            yield InputError(text, field=f"{place}.physical_penalty")
+        if contact.method == AUGMENTED or contact.asks_for_multipliers:
+            text = f'given with method "{AUGMENTED}", under which no layer gives way'
+            yield InputError(text, field=f"{place}.physical_penalty")
     if contact.method == PENALTY:
         if contact.tolerance is not None:
             text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'

@@ -64,6 +64,7 @@ def contact(
         moving = MovingSurface(interface, rigid.get(section.master))
         made = _made(section, model, moving, None, place, augmentation)
     made.physical_adhesion = physical_adhesion(section)
+    made.physical_penalty = section.physical_penalty
     return made
 
 

@@ -155,6 +155,15 @@ class ContactSection(Section):
             AUGMENTED,
         ),
     ] = AUTO
+    physical_penalty: Annotated[
+        bool,
+        _number(
+            "flag",
+            "1",
+            "whether the normal penalty is the stiffness of a layer between the surfaces, as a "
+            "lining, whose compression no warning takes for a penetration",
+        ),
+    ] = False
     tolerance: Annotated[
         float | None,
         _number(

@@ -85,6 +85,7 @@ class Contact(ContactPair, OneHistory):
         nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
+        physical_penalty: Whether the normal penalty is physical, so that the penetration is none.
         goes_on: Whether it meets what goes on beyond cut faces.
         facet_of_point: Number of each point's facet in the group it lies on, (n,).
 
@@ -146,7 +147,7 @@ class Contact(ContactPair, OneHistory):
         super().__init__(model.unknowns, slave, name or slave, parts, options)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
-        self.physical_adhesion, self.goes_on = True, False
+        self.physical_adhesion, self.physical_penalty, self.goes_on = True, False, False
         self.facet_of_point = self.slave_points.facet
 
     def check_at_rest(self) -> None:

@@ -32,6 +32,8 @@ DEEP = 0.05
 SOFT = 0.04
 #: Share of the facet size that is rounding, or the tolerance of an augmented contact.
 ROUNDING = 1e-5
+#: What is too small where bodies penetrate.
+NORMAL = "a larger normal penalty"
 #: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
 STABILISED = 0.05
 #: What the summary has the largest value over the run of, and the quantity that it is of.
@@ -167,8 +169,8 @@ def at_end(
     found = []
     for contact, entry in zip(contacts, shown, strict=True):
         soft, exact = [], _exact(contact) and not relaxed
-        if not exact:
-            soft.append(("penetration", "worst_penetration", "a larger normal penalty"))
+        if not (exact or contact.physical_penalty):
+            soft.append(("penetration", "worst_penetration", NORMAL))
         if not (exact or contact.physical_adhesion):
             soft.append(("elastic slip", "worst_elastic_slip", "a larger stiffness of adhesion"))
         for name, key, cure in soft:
@@ -216,7 +218,7 @@ def soft(
     """
     found = []
     for contact, entry in zip(contacts, shown, strict=True):
-        if _exact(contact) and not relaxed:
+        if contact.physical_penalty or (_exact(contact) and not relaxed):
             continue
         deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
         size = entry["facet_size"]
@@ -227,7 +229,7 @@ def soft(
         found.append(
             f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that "
             f"the bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, "
-            f"and the force is off by about as much; {_cure(contact, 'a larger normal penalty')}"
+            f"and the force is off by about as much; {_cure(contact, NORMAL)}"
         )
     return found
 
@@ -236,7 +238,9 @@ def _cure(contact: Contact, stiffer: str) -> str:
     """What helps against a penetration, or elastic slip, of penalties."""
     if _exact(contact):  # penalties held where no multipliers were found
         return "smaller increments, in which multipliers converge, remove it"
-    return f'{stiffer} makes it smaller, method = "augmented" removes it'
+    layer = "; where it is the compression of a soft layer: physical_penalty = true"
+    layer = layer if stiffer == NORMAL else ""
+    return f'{stiffer} makes it smaller, method = "augmented" removes it{layer}'
 
 
 #: Energies that are no part of what was to be computed, and what is said of them.

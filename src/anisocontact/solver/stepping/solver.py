@@ -13,6 +13,7 @@ from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
+from anisocontact.bulk.material_warnings import STRESSED
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
@@ -352,7 +353,9 @@ class Solver:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])
         text = f"{tried} of the increment" if tried else ""
-        text = "; ".join(part for part in (text, outcome.hint) if part)
+        inverted = any(c.kind == "inverted" for c in outcome.culprits)
+        causes = [line for line in self._doubtful if inverted and STRESSED in line]
+        text = "; ".join(part for part in (text, outcome.hint, *causes) if part)
         stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
         stop.failed = outcome.failed
         raise stop
