@@ -1,17 +1,18 @@
-"""What a step prescribes beside a number: a value that follows an amplitude."""
+"""How a prescribed value goes along a step: held, linearly to a number, or along an amplitude."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
 from anisocontact.base.typed import typed
@@ -29,6 +30,97 @@ _WAY = 64
 _COARSE = 0.25
 #: Size from which on the square of a number is none.
 _LARGEST = 1e150
+
+
+class TimeHistory(Protocol):
+    """How a prescribed value goes along a step from where it is when the step begins."""
+
+    @property
+    def linear(self) -> bool:
+        """Whether it goes linearly to a value, where later steps leave it."""
+
+    def at(self, share: float, duration: float, start: Any) -> Any:
+        """The value at a share of a step.
+
+        Args:
+            share: Share of the step, 0 to 1.
+            duration: Time the step takes.
+            start: Where it was when the step began, a number or array.
+
+        Returns:
+            The value, of the shape of `start`.
+        """
+
+    def end(self, before: float | None, duration: float) -> float | None:
+        """Value at the end of a step that begins at `before`; None where that is not known."""
+
+    def largest(self, duration: float, start: float) -> float:
+        """Largest size of the value along a step that begins at `start`."""
+
+    def coarse(self, duration: float, increments: int) -> bool:
+        """Whether increments are too few to follow it."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """The value stays where it is when the step begins."""
+
+    linear = True
+
+    def at(self, share: float, duration: float, start: Any) -> Any:
+        """See `TimeHistory.at`."""
+        return start
+
+    def end(self, before: float | None, duration: float) -> float | None:
+        """See `TimeHistory.end`."""
+        return before
+
+    def largest(self, duration: float, start: float) -> float:
+        """See `TimeHistory.largest`."""
+        return abs(start)
+
+    def coarse(self, duration: float, increments: int) -> bool:
+        """See `TimeHistory.coarse`."""
+        return False
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """The value goes linearly to a number.
+
+    Attributes:
+        value: The number, of the unit of the prescribed value.
+
+    Example:
+        >>> Ramp(3.0).at(0.5, 4.0, 1.0)
+        2.0
+    """
+
+    value: float
+    linear = True
+
+    def at(self, share: float, duration: float, start: Any) -> Any:
+        """See `TimeHistory.at`."""
+        return (1.0 - share) * start + share * self.value
+
+    def end(self, before: float | None, duration: float) -> float | None:
+        """See `TimeHistory.end`."""
+        return self.value
+
+    def largest(self, duration: float, start: float) -> float:
+        """See `TimeHistory.largest`."""
+        return max(abs(start), abs(self.value))
+
+    def coarse(self, duration: float, increments: int) -> bool:
+        """See `TimeHistory.coarse`."""
+        return False
+
+    def scaled(self, factor: float) -> float:
+        """What prescribes a multiple."""
+        return factor * self.value
+
+    def __str__(self) -> str:
+        return f"{self.value:g}"
 
 
 @typed
@@ -56,6 +148,8 @@ class Course:
     value: float = 1.0
     relative: bool = False
 
+    linear = False
+
     def at(self, share: float, duration: float, start: Any) -> Any:
         """The value at a share of a step.
 
@@ -79,6 +173,21 @@ class Course:
         same = _SAME * max(abs(start), abs(self.value), abs(first))
         return 0.0 if self.relative or abs(first - start) <= same else first - start
 
+    def end(self, before: float | None, duration: float) -> float | None:
+        """See `TimeHistory.end`.
+
+        Raises:
+            InputError: The amplitude begins elsewhere, or has no finite number.
+        """
+        if before is not None and (jump := self.jump(before)):
+            raise InputError(
+                f"the amplitude begins at {before + jump:g} where {before:g} is: prescribe "
+                "that value in a step before, or take relative = true"
+            )
+        if before is None and self.relative:
+            return None
+        return float(self.at(1.0, duration, before or 0.0))
+
     def largest(self, duration: float, start: float) -> float:
         """Largest size of the value along a step that begins at `start`."""
         places = np.arange(_WAY + 1) / _WAY
@@ -92,6 +201,9 @@ class Course:
         """Whether increments are too few to follow the amplitude."""
         values, seen = self._seen(duration, increments)
         return bool(np.abs(values - seen).max() > _COARSE * np.ptp(values))
+
+    def __str__(self) -> str:
+        return "a course"
 
     def _seen(self, duration: float, increments: int) -> tuple[Floats, Floats]:
         """Values at many places of a step, and what straight increments make of them."""
@@ -113,6 +225,47 @@ class Course:
             text = f"amplitude at the time {time:g} is {found:g}, which prescribes {prescribed:g}"
             raise InputError(f"{text}, less than {_LARGEST:g} needed")
         return prescribed
+
+
+#: What a step takes for a prescribed value: a number at its end, or all the way.
+PrescribedValue = float | Course
+
+
+def history_of(given: PrescribedValue) -> Ramp | Course:
+    """How a value goes along the step that prescribes it.
+
+    Args:
+        given: What the step is given.
+
+    Returns:
+        A ramp to a number, or the course itself.
+
+    Example:
+        >>> history_of(2.0).end(0.0, 1.0), history_of(Course(lambda t: t)).end(0.0, 4.0)
+        (2.0, 4.0)
+    """
+    return given if isinstance(given, Course) else Ramp(given)
+
+
+def check_prescribed(given: Any) -> None:
+    """Refuse what no step can prescribe.
+
+    Args:
+        given: What the step is given, a `PrescribedValue` if it is right.
+
+    Raises:
+        InputError: Neither a course nor a finite number in range.
+
+    Example:
+        >>> check_prescribed("much")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: 'much' given, needs a finite number
+    """
+    value: object = history_of(given).value
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f"{given!r} given, needs a finite number")
+    if given is value and out_of_range(value):
+        raise InputError(f"{given!r} given, must be 0, or {RANGE}")
 
 
 @typed

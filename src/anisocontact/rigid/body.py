@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import Course
-from anisocontact.base.errors import InputError
+from anisocontact.base.course import PrescribedValue, check_prescribed, history_of
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.one_history import OneHistory
 from anisocontact.base.typed import typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
@@ -141,7 +141,7 @@ class RigidBody(OneHistory):
         """
         values = self.trial.values
         for name, value in turns_in_radian(components, "").items():
-            if value is None or isinstance(value, Course):
+            if not isinstance(value, int | float):
                 raise InputError(f"{value!r} given, needs a finite number", name)
             values[component_number(name, name)] = value
         self.place(values)
@@ -207,8 +207,8 @@ class RigidBody(OneHistory):
 
 
 def turns_in_radian(
-    components: Mapping[str, object], field: str
-) -> dict[str, float | Course | None]:
+    components: Mapping[str, PrescribedValue | None], field: str
+) -> dict[str, PrescribedValue | None]:
     """Components of a motion with turns in radian, of which `rx_deg` and the like are in degrees.
 
     Args:
@@ -226,7 +226,7 @@ def turns_in_radian(
         >>> turns_in_radian({"x": 1.0, "rz_deg": 180.0}, "motion.die")
         {'x': 1.0, 'rz': 3.141592653589793}
     """
-    found: dict[str, float | Course | None] = {}
+    found: dict[str, PrescribedValue | None] = {}
     for name, given in components.items():
         plain = name.removesuffix("_deg")
         in_degrees = plain != name and plain in COMPONENTS[3:]
@@ -237,19 +237,12 @@ def turns_in_radian(
         if given is None:
             found[component] = None
             continue
-        value = given.value if isinstance(given, Course) else given
-        if not isinstance(value, int | float) or not math.isfinite(value):
-            raise InputError(f"{given!r} given, needs a finite number", where)
+        with within(where):
+            check_prescribed(given)
+        history = history_of(given)
         if name in COMPONENTS[3:]:
-            registry.check_radian(value, where)
-        factor = math.radians(1.0) if in_degrees else 1.0
-        found[component] = (
-            given.scaled(factor)
-            if isinstance(given, Course)
-            else math.radians(value)
-            if in_degrees
-            else value
-        )
+            registry.check_radian(history.value, where)
+        found[component] = history.scaled(math.radians(1.0)) if in_degrees else given
     return found
 
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import Course
+from anisocontact.base.course import history_of
 from anisocontact.contact import Contact
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step
@@ -115,12 +115,10 @@ def _path(steps: Sequence[Step], body: str) -> Floats:
         own = np.zeros_like(path)
         for k, step in enumerate(steps):
             own[k + 1] = own[k]
-            for axis, goal in step.displacement.get(group, {}).items():
-                i = AXES.index(axis)
-                if isinstance(goal, Course):
-                    own[k + 1, i] = goal.at(1.0, step.duration, own[k, i])
-                elif goal is not None:
-                    own[k + 1, i] = goal
+            for axis, value in step.displacement.get(group, {}).items():
+                if value is not None:
+                    i = AXES.index(axis)
+                    own[k + 1, i] = history_of(value).at(1.0, step.duration, own[k, i])
         farther = np.abs(own).max(axis=0) > np.abs(path).max(axis=0)
         path[:, farther] = own[:, farther]
     return path

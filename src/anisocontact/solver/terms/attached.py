@@ -17,7 +17,7 @@ from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.loads import mean_shares
 from anisocontact.solver.terms.persistent import Arrays
-from anisocontact.solver.terms.prescribed import Prescribed
+from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.pressure import outward
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.term import Term
@@ -218,7 +218,7 @@ class _SpringTerm(Attached):
             raise InputError(text, field)
         self._weights = weights[self.nodes]
         self._stiffness = np.asarray(spec.stiffness, dtype=float)
-        self._prescribed, self._anchor = Prescribed(3), np.zeros(3)
+        self._prescribed, self._anchor = PrescribedComponents(3), np.zeros(3)
         #: Anchor and force in the accepted state, (2, 3), length and force.
         self._accepted: Floats = np.zeros((2, 3))
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.course import Course
+from anisocontact.base.course import history_of
 from anisocontact.base.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
@@ -55,8 +55,7 @@ class Attachments(TermGroup):
             stiffness = dict(zip(AXES, self._anchored[name], strict=True))
             for axis, value in values.items():
                 if value and not stiffness[axis]:
-                    given = "a course" if isinstance(value, Course) else f"{value:g}"
-                    text = f"{given} given, the spring has no stiffness along {axis}"
+                    text = f"{history_of(value)} given, the spring has no stiffness along {axis}"
                     raise InputError(text, f"{place}.{name}.{axis}")
 
     @property

@@ -15,7 +15,7 @@ from anisocontact.bulk import LinearBulk, NonlinearBulk
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.form import FormBulk
 from anisocontact.solver.terms.persistent import Arrays
-from anisocontact.solver.terms.prescribed import Prescribed
+from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
@@ -58,7 +58,7 @@ class Bodies(Term):
         diagonal = unknowns.own_nodal(np.array(bulk.diagonal.array_r))
         self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
-        self._temperatures = {name: Prescribed(1) for name in bulk.heated}
+        self._temperatures = {name: PrescribedComponents(1) for name in bulk.heated}
         self.again, self.largest = False, 0.0
         self._inner = np.zeros(0)
         #: Displacement and forces at the last tangent.

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.course import Course
+from anisocontact.base.course import Held, TimeHistory, history_of
 from anisocontact.base.errors import InputError, within
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
 from anisocontact.solver.terms.sectors import Sectors
-from anisocontact.solver.terms.step import Goal, Step
+from anisocontact.solver.terms.step import Step
 
 #: Component of nodes that stay on the axis of a sector.
 ACROSS = "across"
@@ -71,7 +71,7 @@ class Cylinders:
     def __init__(self, model: Model, tied: Ints, sectors: Sectors | None = None) -> None:
         self._model, self._tied, self._sectors = model, tied, sectors
         self._systems: dict[str, Cylindrical] = {}
-        self._goals: dict[_Key, Goal | None] = {}
+        self._histories: dict[_Key, TimeHistory] = {}
         self._guides: list[Guide] = []
 
     @property
@@ -85,7 +85,7 @@ class Cylinders:
         comm = self._model.mesh.comm
         found: list[tuple[Ints, Floats]] = []
         for guide in self._guides:
-            if isinstance(self._goals[guide.group, guide.component], Course):
+            if not self._histories[guide.group, guide.component].linear:
                 continue
             e, moved = guide.directions, np.abs(guide.at(1.0) - guide.at(0.0))
             local = [e.max(axis=0, initial=-2.0), -e.min(axis=0, initial=2.0)]
@@ -109,27 +109,27 @@ class Cylinders:
         Raises:
             InputError: An unknown group, or a node on the axis.
         """
-        self._goals = {
-            key: None if isinstance(goal, Course) else goal
-            for key, goal in self._goals.items()
+        self._histories = {
+            key: history if history.linear else Held()
+            for key, history in self._histories.items()
             if not self._taken(key, step)
         }
         for group, given in step.cylindrical.items():
             self._systems[group] = given
-            for name, goal in given.values.items():
-                self._goals.pop((group, name), None)
-                if goal is not None:
-                    self._goals[group, name] = goal
-        self._guides = [self._guide(step, *key, goal, u) for key, goal in self._goals.items()]
+            for name, value in given.values.items():
+                self._histories.pop((group, name), None)
+                if value is not None:
+                    self._histories[group, name] = history_of(value)
+        self._guides = [self._guide(step, *key, one, u) for key, one in self._histories.items()]
 
     def stop(self) -> None:
         """The step ends where it is: prescribed values stay there."""
-        self._goals = dict.fromkeys(self._goals)
+        self._histories = dict.fromkeys(self._histories, Held())
 
     def lets_go(self, guide: Guide, step: Step) -> bool:
         """Whether a step that has not begun yet ends a guide of these."""
         key = guide.group, guide.component
-        if key not in self._goals:
+        if key not in self._histories:
             return False
         given = step.cylindrical.get(guide.group)
         freed = given is not None and given.values.get(guide.component, 0.0) is None
@@ -142,7 +142,7 @@ class Cylinders:
         other = given is not None and given.system != self._systems[group].system
         return other or group in step.displacement or group in step.rotation
 
-    def _guide(self, step: Step, group: str, name: str, goal: Goal | None, u: Floats) -> Guide:
+    def _guide(self, step: Step, group: str, name: str, history: TimeHistory, u: Floats) -> Guide:
         field = f"step {step.name!r}.cylindrical"
         nodes = np.setdiff1d(self._model.nodes(group, field).astype(np.int64), self._tied)
         if self._sectors is not None:
@@ -161,8 +161,6 @@ class Cylinders:
         start = np.einsum("ni,ni->n", directions, u.reshape(-1, 3)[nodes])
 
         def at(share: float) -> Floats:
-            if isinstance(goal, Course):
-                return np.asarray(goal.at(share, step.duration, start))
-            return start if goal is None else np.asarray((1.0 - share) * start + share * goal)
+            return np.asarray(history.at(share, step.duration, start))
 
         return Guide(group, name, "cylindrical", nodes, directions, at)

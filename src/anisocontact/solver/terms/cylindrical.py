@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import Course
-from anisocontact.base.errors import InputError
-from anisocontact.base.parameters import RANGE, out_of_range
+from anisocontact.base.course import PrescribedValue, check_prescribed
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import check_vector
 
@@ -43,7 +41,7 @@ class Cylindrical:
         [[0.0, 1.0, 0.0]]
     """
 
-    values: Mapping[str, float | Course | None]
+    values: Mapping[str, PrescribedValue | None]
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     point: Sequence[float] = (0.0, 0.0, 0.0)
 
@@ -54,11 +52,9 @@ class Cylindrical:
             if name not in COMPONENTS:
                 text = f"no component {name!r}, allowed: {', '.join(COMPONENTS)}"
                 raise InputError(text, name)
-            plain = value is None or isinstance(value, Course)
-            if not plain and not (isinstance(value, int | float) and math.isfinite(value)):
-                raise InputError(f"{value!r} given, needs a finite number", name)
-            if isinstance(value, int | float) and out_of_range(value):
-                raise InputError(f"{value!r} given, must be 0, or {RANGE}", name)
+            if value is not None:
+                with within(name):
+                    check_prescribed(value)
         check_vector("axis", self.axis)
         check_vector("point", self.point)
         if not np.any(self.axis):

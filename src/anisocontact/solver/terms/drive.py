@@ -8,7 +8,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
-from anisocontact.solver.terms.prescribed import Prescribed
+from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
@@ -27,7 +27,7 @@ class Drive:
         self._body = body
         self.prescribed = np.ones(6, dtype=bool)
         self._turn: Turn | None = None
-        self._motion, self._load = Prescribed(6), Prescribed(6)
+        self._motion, self._load = PrescribedComponents(6), PrescribedComponents(6)
 
     def begin(self, step: Step, values: Floats, reaction: Floats) -> None:
         """Take over a step; what it does not name stays where it is.

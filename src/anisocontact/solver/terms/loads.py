@@ -9,13 +9,14 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
+from anisocontact.base.course import PrescribedValue
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.prescribed import Prescribed
+from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.pressure import Given, PressureLoads
-from anisocontact.solver.terms.step import AXES, Goal, Step
+from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.term import Term, TermGroup
 
 
@@ -30,7 +31,7 @@ class DeadLoads(Term):
     def __init__(self, model: Model) -> None:
         self._model = model
         self._shares: dict[tuple[str, str], Floats] = {}
-        self._values: dict[tuple[str, str], Prescribed] = {}
+        self._values: dict[tuple[str, str], PrescribedComponents] = {}
         index_map = model.space.dofmap.index_map
         self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
         self._left = np.zeros_like(self._released)
@@ -43,12 +44,12 @@ class DeadLoads(Term):
         for one in self._values.values():
             one.begin(step.duration)
         for kind, share in _SHARES.items():
-            loads: Mapping[str, Mapping[str, Goal]] = getattr(step, kind)
+            loads: Mapping[str, Mapping[str, PrescribedValue]] = getattr(step, kind)
             for name, values in loads.items():
                 if (kind, name) not in self._shares:
                     found = share(self._model, name, f"step {step.name!r}.{kind}")
                     self._shares[kind, name] = found
-                    self._values[kind, name] = Prescribed(3)
+                    self._values[kind, name] = PrescribedComponents(3)
                     self._values[kind, name].begin(step.duration)
                 for axis, value in values.items():
                     self._values[kind, name].prescribe(AXES.index(axis), value)
@@ -79,7 +80,7 @@ class DeadLoads(Term):
     def given(self, step: Step) -> Iterator[Given]:
         """What a step that has begun gives other than zero, by components."""
         for kind in _SHARES:
-            loads: Mapping[str, Mapping[str, Goal]] = getattr(step, kind)
+            loads: Mapping[str, Mapping[str, PrescribedValue]] = getattr(step, kind)
             for name, values in loads.items():
                 share = self._shares[kind, name]
                 for axis, value in values.items():

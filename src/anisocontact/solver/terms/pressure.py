@@ -13,7 +13,7 @@ from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Couplings, Surfaced, inward
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.prescribed import Prescribed
+from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
@@ -34,7 +34,7 @@ class PressureLoads(Term):
         self._model = model
         self._materials = materials
         self._surfaces: dict[str, _Surface] = {}
-        self._values: dict[str, Prescribed] = {}
+        self._values: dict[str, PrescribedComponents] = {}
         self._now: dict[str, float] = {}
 
     @override
@@ -49,7 +49,7 @@ class PressureLoads(Term):
                 self._surfaces[group] = _Surface(
                     self._model, group, small_strain(self._materials[body])
                 )
-                self._values[group] = Prescribed(1)
+                self._values[group] = PrescribedComponents(1)
                 self._values[group].begin(step.duration)
             self._values[group].prescribe(0, value)
 

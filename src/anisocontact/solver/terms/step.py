@@ -7,8 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from anisocontact.base.course import Course, way_cut_off
-from anisocontact.base.errors import InputError
+from anisocontact.base.course import (
+    Course,
+    PrescribedValue,
+    check_prescribed,
+    history_of,
+    way_cut_off,
+)
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
@@ -26,10 +32,6 @@ _PLAIN = ("pressure", "temperature")
 MOST_INCREMENTS = 10_000_000
 #: Share of the way along a path above which it is said that increments cut it off.
 _CUT_OFF = 0.05
-#: What a value is prescribed to be along a step: a number at its end, or all the way.
-Goal = float | Course
-
-
 #: Field of a step, name of what is prescribed, component.
 Place = tuple[str, str, str]
 
@@ -78,18 +80,18 @@ class Step:
 
     name: str
     increments: int
-    displacement: Mapping[str, Mapping[str, Goal | None]] = field(default_factory=dict)
-    traction: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    displacement: Mapping[str, Mapping[str, PrescribedValue | None]] = field(default_factory=dict)
+    traction: Mapping[str, Mapping[str, PrescribedValue]] = field(default_factory=dict)
     duration: float = 1.0
-    motion: Mapping[str, Mapping[str, Goal | None]] = field(default_factory=dict)
-    load: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
-    force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
-    pressure: Mapping[str, Goal] = field(default_factory=dict)
-    body_force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    motion: Mapping[str, Mapping[str, PrescribedValue | None]] = field(default_factory=dict)
+    load: Mapping[str, Mapping[str, PrescribedValue]] = field(default_factory=dict)
+    force: Mapping[str, Mapping[str, PrescribedValue]] = field(default_factory=dict)
+    pressure: Mapping[str, PrescribedValue] = field(default_factory=dict)
+    body_force: Mapping[str, Mapping[str, PrescribedValue]] = field(default_factory=dict)
     rotation: Mapping[str, Turn] = field(default_factory=dict)
-    anchor: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    anchor: Mapping[str, Mapping[str, PrescribedValue]] = field(default_factory=dict)
     cylindrical: Mapping[str, Cylindrical] = field(default_factory=dict)
-    temperature: Mapping[str, Goal] = field(default_factory=dict)
+    temperature: Mapping[str, PrescribedValue] = field(default_factory=dict)
     until: Until | None = None
 
     def __post_init__(self) -> None:
@@ -119,21 +121,23 @@ class Step:
         }
         object.__setattr__(self, "rotation", rotation)
 
-    def goals(self) -> Iterator[tuple[Place, Goal | None]]:
+    def prescribed(self) -> Iterator[tuple[Place, PrescribedValue | None]]:
         """All values that are given, but for rotations, with where they stand."""
         for kind in ("displacement", "motion", "load", "anchor", *_FORCES):
-            named: Mapping[str, Mapping[str, Goal | None]] = getattr(self, kind)
+            named: Mapping[str, Mapping[str, PrescribedValue | None]] = getattr(self, kind)
             for name, values in named.items():
-                yield from (((kind, name, component), goal) for component, goal in values.items())
+                yield from (((kind, name, component), value) for component, value in values.items())
         for name, given in self.cylindrical.items():
-            yield from ((("cylindrical", name, part), goal) for part, goal in given.values.items())
+            yield from (
+                (("cylindrical", name, part), value) for part, value in given.values.items()
+            )
         for kind in _PLAIN:
-            plain: Mapping[str, Goal] = getattr(self, kind)
-            yield from (((kind, name, ""), goal) for name, goal in plain.items())
+            plain: Mapping[str, PrescribedValue] = getattr(self, kind)
+            yield from (((kind, name, ""), value) for name, value in plain.items())
 
     def courses(self) -> dict[Place, Course]:
         """Those of the values that follow an amplitude."""
-        return {place: goal for place, goal in self.goals() if isinstance(goal, Course)}
+        return {place: value for place, value in self.prescribed() if isinstance(value, Course)}
 
     def prescribed_groups(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
@@ -183,19 +187,17 @@ class Step:
                 raise self._error(f"{kind}.{name}", text)
             yield name, values
 
-    def _check(self, kind: str, group: str, axis: str, value: Goal | None) -> None:
+    def _check(self, kind: str, group: str, axis: str, value: PrescribedValue | None) -> None:
         where = f"{kind}.{group}.{axis}"
         if axis not in AXES:
             raise self._error(where, f"no axis {axis!r}, allowed: {', '.join(AXES)}")
         self._check_value(kind, where, value)
 
-    def _check_value(self, kind: str, where: str, value: Goal | None) -> None:
-        if (value is None and kind == "displacement") or isinstance(value, Course):
+    def _check_value(self, kind: str, where: str, value: PrescribedValue | None) -> None:
+        if value is None and kind == "displacement":
             return
-        if not isinstance(value, int | float) or not math.isfinite(value):
-            raise self._error(where, f"{value!r} given, needs a finite number")
-        if out_of_range(value):
-            raise self._error(where, f"{value!r} given, must be 0, or {RANGE}")
+        with within(f"step {self.name!r}.{where}"):
+            check_prescribed(value)
 
     def _error(self, where: str, message: str) -> InputError:
         return InputError(message, f"step {self.name!r}.{where}")
@@ -218,25 +220,34 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
     for step in steps:
         turned = set(step.rotation)
         known |= {place: None for place in known if place[1] in turned}
-        for place, goal in step.goals():
+        for place, value in step.prescribed():
             name = ".".join(part for part in place if part)
             field = f"step {step.name!r}.{name}"
-            try:
-                known[place] = after = _end(goal, known.get(place, 0.0), step.duration)
-                if place[0] == "load" and after is None:
-                    raise InputError("relative to a reaction force, which is not known beforehand")
-                if isinstance(goal, Course) and goal.coarse(step.duration, step.increments):
-                    said.append(
-                        f"{field}: {step.increments} increments are too few to follow its amplitude"
-                    )
-            except InputError as error:
-                raise InputError(error.said, field) from None
+            with within(field):
+                known[place], coarse = _followed(step, place, value, known.get(place, 0.0))
+            if coarse:
+                said.append(
+                    f"{field}: {step.increments} increments are too few to follow its amplitude"
+                )
             if step.until is not None:  # where it ends is not known beforehand
                 known[place] = None
             if place[0] == "motion":  # a load on what is freed begins with what held it
-                known["load", *place[1:]] = None if goal is None else 0.0
+                known["load", *place[1:]] = None if value is None else 0.0
         said += _shortened(step)
     return said
+
+
+def _followed(
+    step: Step, place: Place, value: PrescribedValue | None, before: float | None
+) -> tuple[float | None, bool]:
+    """Value at the end of a step, None if it is not known before; whether increments are coarse."""
+    if value is None:
+        return None, False
+    history = history_of(value)
+    after = history.end(before, step.duration)
+    if after is None and place[0] == "load":
+        raise InputError("relative to a reaction force, which is not known beforehand")
+    return after, history.coarse(step.duration, step.increments)
 
 
 def _shortened(step: Step) -> list[str]:
@@ -254,15 +265,3 @@ def _shortened(step: Step) -> list[str]:
                 f"{100.0 * lost:.0f} % of the way along its path, at corners or as chords of arcs"
             )
     return said
-
-
-def _end(goal: Goal | None, before: float | None, duration: float) -> float | None:
-    """Value at the end of a step; None where it is not known beforehand."""
-    if not isinstance(goal, Course):
-        return goal
-    if before is not None and (jump := goal.jump(before)):
-        raise InputError(
-            f"the amplitude begins at {before + jump:g} where {before:g} is: prescribe "
-            "that value in a step before, or take relative = true"
-        )
-    return None if before is None and goal.relative else goal.at(1.0, duration, before or 0.0)

@@ -5,16 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.course import Held, history_of
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.aims import Aim, Stay, StepBeginning, Turned, aim_of
 from anisocontact.solver.terms.free_modes import Supported, along_axes
 from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.support_motions import (
+    RotatedSupport,
+    StepStart,
+    SupportMotion,
+    TranslatedSupport,
+)
 
 Support = tuple[str, int]  # group of facets or nodes, axis
 
-
+#: What holds nodes where they are.
+_HELD = TranslatedSupport(Held())
 #: Displacements that count as the same, over the largest coordinate.
 SAME = 1e-13
 
@@ -37,9 +44,9 @@ class Supports:
         self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
         self._fixed = _fixed(model)
         self._nodes: dict[str, Ints] = {}
-        self._aims: dict[Support, Aim] = {}
+        self._motions: dict[Support, SupportMotion] = {}
         self._owner: dict[Support, Ints] = {}
-        self._curved: list[tuple[Aim, Ints, StepBeginning]] = []
+        self._curved: list[tuple[SupportMotion, Ints, StepStart]] = []
         self.unknowns: Ints = np.zeros(0, dtype=np.int64)
         self.start: Floats = np.zeros(0)
         self.end: Floats = np.zeros(0)
@@ -61,10 +68,10 @@ class Supports:
         taken = np.full((len(self.places), len(u)), np.nan)
         taken[:, self._fixed] = 0.0
         owner: dict[Support, Ints] = {}
-        for (group, axis), aim in self._aims.items():
+        for (group, axis), motion in self._motions.items():
             unknowns = 3 * self._owned_nodes(group) + axis
-            start = self._beginning(axis, unknowns, u, step.duration)
-            value = np.array([aim.at(share, start) for share in self.places])
+            start = self._start(axis, unknowns, u, step.duration)
+            value = np.array([motion.at(share, start) for share in self.places])
             clash = np.abs(taken[:, unknowns] - value) > self._same
             if clash.any():
                 place, first = np.argwhere(clash)[0]
@@ -79,18 +86,18 @@ class Supports:
         self.end = taken[-1, self.unknowns]
         self._curved = [
             (
-                self._aims[group, axis],
+                self._motions[group, axis],
                 np.searchsorted(self.unknowns, supported),
-                self._beginning(axis, supported, u, step.duration),
+                self._start(axis, supported, u, step.duration),
             )
             for (group, axis), supported in owner.items()
-            if not self._aims[group, axis].straight
+            if not self._motions[group, axis].linear
         ]
 
     @property
     def places(self) -> Floats:
         """Shares of the step at which it is to be looked at: its end, or places all along it."""
-        count = max((aim.places for aim in self._aims.values()), default=1)
+        count = max((motion.places for motion in self._motions.values()), default=1)
         return np.arange(1, count + 1) / count
 
     def supported(self) -> list[Supported]:
@@ -120,13 +127,13 @@ class Supports:
 
     def stop(self) -> None:
         """The step ends where it is: prescribed values stay there."""
-        self._aims = dict.fromkeys(self._aims, Stay())
+        self._motions = dict.fromkeys(self._motions, _HELD)
 
     def set_load_factor(self, factor: float) -> None:
         """Go to a fraction of the step."""
         values = (1.0 - factor) * self.start + factor * self.end
-        for aim, place, start in self._curved:
-            values[place] = aim.at(factor, start)
+        for motion, place, start in self._curved:
+            values[place] = motion.at(factor, start)
         self.values = values
 
     def violation(self, x: Vec) -> Floats:
@@ -134,29 +141,29 @@ class Supports:
         return np.asarray(x.array_r[self.unknowns] - self.values)
 
     def _take_over(self, step: Step) -> None:
-        for key, aim in self._aims.items():
-            if not aim.straight:
-                self._aims[key] = Stay()
+        for key, motion in self._motions.items():
+            if not motion.linear:
+                self._motions[key] = _HELD
         for group, values in step.displacement.items():
             self._model.nodes(group, f"step {step.name!r}.displacement")
             for name, given in values.items():
-                self._aims.pop((group, AXES.index(name)), None)
+                self._motions.pop((group, AXES.index(name)), None)
                 if given is not None:
-                    self._aims[group, AXES.index(name)] = aim_of(given)
+                    self._motions[group, AXES.index(name)] = TranslatedSupport(history_of(given))
         for group in step.cylindrical:
             for axis in range(3):
-                self._aims.pop((group, axis), None)
+                self._motions.pop((group, axis), None)
         for group, turn in step.turned_groups().items():
             self._model.nodes(group, f"step {step.name!r}.rotation")
             for axis in range(3):
-                self._aims.pop((group, axis), None)
-                self._aims[group, axis] = Turned(turn)
+                self._motions.pop((group, axis), None)
+                self._motions[group, axis] = RotatedSupport(turn)
 
-    def _beginning(self, axis: int, unknowns: Ints, u: Floats, duration: float) -> StepBeginning:
+    def _start(self, axis: int, unknowns: Ints, u: Floats, duration: float) -> StepStart:
         """Where the nodes of unknowns are when a step begins."""
         nodes = unknowns // 3
         positions = np.asarray(self._model.positions[nodes] + u.reshape(-1, 3)[nodes])
-        return StepBeginning(axis, u[unknowns], positions, duration)
+        return StepStart(axis, u[unknowns], positions, duration)
 
     def reactions(self, force: Floats) -> dict[str, Floats]:
         """Force of each group's supports on the body.

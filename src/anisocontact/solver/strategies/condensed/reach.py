@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
-from anisocontact.base.course import Course
+from anisocontact.base.course import history_of
 from anisocontact.contact import Contact
 from anisocontact.contact.remote_nodes import all_marked, marked_nodes, node_count
 from anisocontact.mesh import Model
@@ -154,10 +154,8 @@ def _prescribed_range(steps: Sequence[Step], body: str) -> Floats:
     for step in steps:
         for group, values in step.displacement.items():
             if group.partition(".")[0] == body:
-                for axis, goal in values.items():
-                    i = AXES.index(axis)
-                    if isinstance(goal, Course):
-                        extent[i] = max(extent[i], goal.largest(step.duration, extent[i]))
-                    else:
-                        extent[i] = max(extent[i], abs(goal or 0.0))
+                for axis, value in values.items():
+                    if value is not None:
+                        i, history = AXES.index(axis), history_of(value)
+                        extent[i] = max(extent[i], history.largest(step.duration, extent[i]))
     return extent

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import Course
-from anisocontact.solver.terms.step import Goal
+from anisocontact.base.course import PrescribedValue, TimeHistory, history_of
 
 
-class Prescribed:
+class PrescribedComponents:
     """A vector of prescribed components; those that a step does not name stay as they are.
 
     Args:
@@ -20,7 +19,8 @@ class Prescribed:
         end: Values at its end, (size,).
 
     Example:
-        >>> force = Prescribed(2)
+        >>> from anisocontact.base.course import Course
+        >>> force = PrescribedComponents(2)
         >>> force.begin(1.0)
         >>> force.prescribe(0, 4.0)
         >>> force.prescribe(1, Course(lambda t: t**2))
@@ -30,7 +30,7 @@ class Prescribed:
 
     def __init__(self, size: int) -> None:
         self.start, self.end = np.zeros(size), np.zeros(size)
-        self._courses: dict[int, Course] = {}
+        self._curved: dict[int, TimeHistory] = {}
         self._duration = 1.0
 
     def begin(self, duration: float, start: Floats | None = None) -> None:
@@ -42,35 +42,34 @@ class Prescribed:
         """
         self.start = (self.end if start is None else start).copy()
         self.end = self.start.copy()
-        self._courses, self._duration = {}, duration
+        self._curved, self._duration = {}, duration
 
-    def prescribe(self, i: int, goal: Goal) -> None:
+    def prescribe(self, i: int, value: PrescribedValue) -> None:
         """Prescribe a component for the step that has begun."""
-        if isinstance(goal, Course):
-            self._courses[i] = goal
-            self.end[i] = goal.at(1.0, self._duration, self.start[i])
-        else:
-            self._courses.pop(i, None)
-            self.end[i] = float(goal)
+        history = history_of(value)
+        self._curved.pop(i, None)
+        if not history.linear:
+            self._curved[i] = history
+        self.end[i] = history.at(1.0, self._duration, self.start[i])
 
     def stop(self, fraction: float) -> None:
         """End the step at a fraction of it: the values there are those at its end."""
         self.end = self.at(fraction)
-        self._courses = {}
+        self._curved = {}
 
     @property
     def varies(self) -> bool:
         """Whether a component follows a course."""
-        return bool(self._courses)
+        return bool(self._curved)
 
     @property
     def rests(self) -> bool:
         """Whether all components stay as they are along the step."""
-        return not self._courses and bool((self.start == self.end).all())
+        return not self._curved and bool((self.start == self.end).all())
 
     def at(self, fraction: float) -> Floats:
         """Values at a fraction of the step, (size,)."""
         values = (1.0 - fraction) * self.start + fraction * self.end
-        for i, course in self._courses.items():
-            values[i] = course.at(fraction, self._duration, self.start[i])
+        for i, history in self._curved.items():
+            values[i] = history.at(fraction, self._duration, self.start[i])
         return values
