@@ -256,6 +256,15 @@ MISTAKES = [
     (CUBE.replace("*HEADING", "*INCLUDE, INPUT=none.inp"), "does not exist"),
     (CUBE.replace("cube, S2", "cube, S7"), "face 'S7' given, S1 to S6 are read"),
     (CUBE.replace("cube, S2", "cube, SPOS"), "face 'SPOS' given, S1 to S6 are read"),
+    (CUBE.replace("5, 6, 7, 8", "5, 6, 7.5, 8"), "7.5 given, elements and nodes have whole"),
+    (
+        CUBE.replace(
+            "*NSET, NSET=Low, G", "*ELEMENT, TYPE=C3D4\n100, 1, 2, 30, 5\n*NSET, NSET=Low, G"
+        ),
+        "*ELEMENT: element 100 is given once more, as another one",
+    ),
+    (f"{CUBE}*NSET, NSET=back, GENERATE\n4, 1, 1\n", "4, 1, 1 given, GENERATE needs first, last"),
+    (f"{CUBE}*NSET, NSET=back, GENERATE\n1, 4, 0\n", "1, 4, 0 given, GENERATE needs first, last"),
     (CUBE.replace("TYPE=C3D8R, ", ""), "*ELEMENT needs the option TYPE"),
     (CUBE.replace("1, 2, 30, 4,\n 5, 6, 7, 8", "1, 2, 4, 30, 5, 6, 7, 8"), "flat or inverted"),
 ]
@@ -269,6 +278,21 @@ def test_what_is_wrong_is_one_line(tmp_path, text, said):
     assert line.startswith("mesh.file: mesh file")
     assert said in line
     assert "\n" not in line
+
+
+def test_what_is_legal_and_hardly_meant_is_said(tmp_path):
+    """Requirement: a node at a second place, and a surface without faces, are no silence; the same
+    node and element once more, and faces of some elements, are nothing to be told."""
+    notes = file_arrays(written(tmp_path, CUBE)).notes
+    again = CUBE.replace("*ELEMENT,", " 7, 2., 2., 2.\n*ELEMENT,")
+    assert file_arrays(written(tmp_path, again)).notes == notes
+    other = (
+        again.replace("2., 2., 2.\n*EL", "2., 2., 2.5\n*EL") + "*SURFACE, NAME=None\nshells, S1\n"
+    )
+    assert set(file_arrays(written(tmp_path, other)).notes) - set(notes) == {
+        "1 nodes are given once more, at another place: the last one counts",
+        "surface 'none' has no face of a solid: its set of elements is not there",
+    }
 
 
 def test_cells_of_unlike_order_are_refused(tmp_path):

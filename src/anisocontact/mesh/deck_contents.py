@@ -87,6 +87,7 @@ class Deck:
         of_parts: Names of sets and surfaces that parts alone have given.
         own: Largest number that nodes and elements beside the parts have; instances begin behind.
         unsorted: Names of node sets whose order counts.
+        moved: How many nodes are given once more, at another place, which counts.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -102,6 +103,7 @@ class Deck:
     own: int = 0
     of_parts: set[str] = field(default_factory=set)
     unsorted: set[str] = field(default_factory=set)
+    moved: int = 0
     same: dict[str, str] = field(default_factory=dict)
     _held: dict[tuple[int, ...], str] = field(default_factory=dict)
 
@@ -115,6 +117,7 @@ class Deck:
             x, y, z = (real(v or "0") for v in (*given, "0", "0", "0")[:3])
             if system == "C":
                 x, y = x * math.cos(math.radians(y)), x * math.sin(math.radians(y))
+            self.moved += self.nodes.get(int(number), [x, y, z]) != [x, y, z]
             self.nodes[int(number)] = [x, y, z]
             found.append(int(number))
         self.add_nodes(card, found)
@@ -127,13 +130,18 @@ class Deck:
             self.left_out[written] = self.left_out.get(written, 0) + len(card.data)
             return
         size = KNOWN[kind][1] + 1
-        numbers = card.numbers().astype(np.int64)
+        given = card.numbers()
+        numbers = given.astype(np.int64)
+        if len(broken := given[numbers != given]):
+            raise InputError(f"{broken[0]:g} given, elements and nodes have whole numbers")
         rows = numbers.reshape(-1, size).tolist() if len(numbers) % size == 0 else []
         if not rows:  # nodes beyond those of the element are allowed where it is a line
             rows = [[int(v) for v in entries[:size]] for entries in card.fields()]
         if any(len(row) < size for row in rows):
             raise InputError(f"elements {written} need {size - 1} nodes each")
-        self.elements |= {number: (kind, tuple(nodes)) for number, *nodes in rows}
+        for number, *nodes in rows:
+            if self.elements.setdefault(number, (kind, tuple(nodes))) != (kind, tuple(nodes)):
+                raise InputError(f"element {number} is given once more, as another one")
         self.add_elements(card, [row[0] for row in rows])
 
     def read_node_set(self, card: Card) -> None:
@@ -245,6 +253,9 @@ class Deck:
         for entries in card.fields():
             if "GENERATE" in card.options:
                 first, last, *step = (int(v) for v in entries)
+                if last < first or min(step, default=1) < 1:
+                    text = ", ".join(entries)
+                    raise InputError(f"{text} given, GENERATE needs first, last and a step > 0")
                 found += range(more + first, more + last + 1, *step)
             else:
                 for entry in entries:

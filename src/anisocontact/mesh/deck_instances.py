@@ -97,6 +97,7 @@ def place(whole: Deck, card: Card, part: Deck) -> None:
         only = len(part.sections) == 1
         moved_set = f"{name}.{section.elements}".upper()
         whole.sections[name if only else f"{name}_{body}"] = replace(section, elements=moved_set)
+    whole.moved += part.moved
     for element, count in part.left_out.items():
         whole.left_out[element] = whole.left_out.get(element, 0) + count
     for step, one in part.cards:

@@ -103,8 +103,18 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
     for name, faces in _once(deck, deck.surfaces):
         mesh.surfaces[plain(name)] = _faces(deck, faces, at)
     mesh.surfaces |= _of_faces(deck, mesh, elements_of_faces, at)
+    mesh.notes = (*mesh.notes, *_odd(deck, mesh))
     mesh.left_out = deck.left_out
     return mesh
+
+
+def _odd(deck: Deck, mesh: WholeMesh) -> Iterator[str]:
+    """What is legal in a deck and hardly meant."""
+    if deck.moved:
+        yield f"{deck.moved} nodes are given once more, at another place: the last one counts"
+    for name, faces in mesh.surfaces.items():
+        if not faces:
+            yield f"surface {name!r} has no face of a solid: its set of elements is not there"
 
 
 def _beside_solids(by_kind: dict[str, list[int]]) -> list[int]:
