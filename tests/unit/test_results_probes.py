@@ -131,6 +131,28 @@ def test_forces_moments_and_times(run):
     assert Results(out).times.tolist() == [0.0, 0.5, 1.5, 2.0]
 
 
+@pytest.mark.parametrize(
+    ("order", "cell"), [(1, "tetrahedron"), (1, "hexahedron"), (2, "hexahedron")]
+)
+@pytest.mark.parametrize("z", [1.0, 2.0])
+def test_a_section_through_nodes(run, order, cell, z):
+    """Requirement: a plane in which nodes lie, which rounding puts on either side, carries the
+    weight in front of it: that of the mean of both layers, exact where the load is uniform.
+
+    Source: 2 A (3 - z) of a load of 2 per volume. Tolerance: round-off of the solution.
+    """
+    text = CASE.replace("normal = [0, 0, 2]", "normal = [0, 0, 2]\nabout = [2, 1, 0]")
+    text = text.replace("point = [0, 0, 1.4]", f"point = [0, 0, {z}]")
+    first, last = text.index("[[step]]"), text.index("[output]")
+    step = '[[step]]\nname = "back"\nincrements = 1\nbody_force = {{ bar = {{ z = -2 }} }}\n'
+    held = 'displacement = {{ "bar.bottom" = {{ x = 0, y = 0, z = 0 }} }}\n'
+    code, out = run(order, cell, text[:first] + step + held + text[last:])
+    assert code == 0
+    history = Results(out).history
+    area = history["reactions.bar.bottom.z"][-1] / 6.0
+    assert history["resultants.waist.force.z"][-1] == pytest.approx(-2.0 * area * (3.0 - z))
+
+
 def test_principal_stresses_of_a_shear():
     """Requirement: pure shear t has t, 0, -t and the equivalent stress sqrt(3) t."""
     shear = np.array([[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]])

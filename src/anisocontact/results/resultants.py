@@ -18,6 +18,9 @@ from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import small_strain
 from anisocontact.solver import Problem
 
+#: Distance of a node from a plane, over the largest of the body, that is rounding.
+_IN_PLANE = 1e-9
+
 
 @dataclass(frozen=True)
 class GroupResultant:
@@ -52,7 +55,8 @@ class SectionResultant:
 
     The sum over the nodes in front of a plane of what balances the cells. Cells that lie wholly
     on one side add nothing to it, so it is the mean of the traction through the layer of
-    cells that the plane cuts: with equilibrium of the nodes the exact force.
+    cells that the plane cuts: with equilibrium of the nodes the exact force. Nodes in the plane
+    count half, so that it is the mean of the layers on both sides; where the body ends there, not.
 
     Args:
         body: The body.
@@ -71,7 +75,9 @@ class SectionResultant:
         return self.body
 
     def nodes(self, problem: Problem, field: str) -> Ints:
-        """Nodes of the body in front of the plane that this process owns; collective.
+        """Nodes of the body that this process owns, to be summed with half of their force.
+
+        Collective. Those in front of the plane are there twice, those in it once.
 
         Raises:
             InputError: There is no such body, or the plane does not cut it.
@@ -80,17 +86,21 @@ class SectionResultant:
         dim = problem.model.idealisation.dim
         own = _owned(problem, fem.locate_dofs_topological(space, dim, cells))
         away = space.tabulate_dof_coordinates()[own] - np.array(self.point)
-        front = away @ np.array(self.normal) > 0.0
-        there, before = problem.comm.allreduce(np.array([len(own), front.sum()]))
+        distance = away @ np.array(self.normal)
+        least = _IN_PLANE * max(problem.comm.allgather(np.abs(distance).max(initial=0.0)))
+        front, behind = distance > least, distance < -least
+        counts = np.array([len(own), front.sum(), behind.sum()])
+        there, before, back = problem.comm.allreduce(counts)
         if before in (0, there):
             side = "behind" if before == 0 else "in front of"
             text = f"all of the body {self.body!r} is {side} the plane, which has to cut it"
             raise InputError(text, f"{field}.point")
-        return np.asarray(own[front])
+        once = ~(front | behind) if back else np.zeros_like(front)
+        return np.concatenate([own[front], own[front], own[once]])
 
     def forces(self, problem: Problem) -> Floats:
-        """At all nodes that this process owns, (nodes, 3), force."""
-        return -problem.inner_forces()
+        """Half of those at all nodes that this process owns, (nodes, 3), force."""
+        return -0.5 * problem.inner_forces()
 
 
 type Resultant = GroupResultant | SectionResultant
