@@ -263,7 +263,7 @@ def test_a_correction_after_one_without_gain_is_more_precise() -> None:
     system stands for one far out of balance, whose forces have not fallen by half since.
     """
     problem = _pair()
-    problem.balance = replace(problem.balance, force_scale=1.0)
+    problem.evaluation.balance = replace(problem.balance, force_scale=1.0)
     solver = LaggedNewton(problem, "lagged_", {}, lambda *_: None, lambda _: None, {})
     solver._forcing.begin()
     asked = [solver._forcing.rtol(problem, size) for size in (1.0, 0.6, 0.1)]
@@ -278,11 +278,11 @@ def test_a_correction_from_far_off_leaves_less_than_the_forces_at_work() -> None
     times these, and 1e-13 of the residual at least, which rounding allows. Tolerance: rounding.
     """
     forcing, problem = Forcing(1e-8, ROUGH, CAREFUL), _pair()
-    problem.balance = replace(problem.balance, force_scale=0.0)
+    problem.evaluation.balance = replace(problem.balance, force_scale=0.0)
     assert forcing.rtol(problem, 1e-1) == ROUGH  # where no force is at work there is no such bound
-    problem.balance = replace(problem.balance, force_scale=1.0)
+    problem.evaluation.balance = replace(problem.balance, force_scale=1.0)
     assert forcing.rtol(problem, 1e-1) == ROUGH
-    problem.balance = replace(problem.balance, force_scale=1e4)
+    problem.evaluation.balance = replace(problem.balance, force_scale=1e4)
     assert forcing.rtol(problem, 1e5) == pytest.approx(3e-9, rel=1e-12)
     assert forcing.rtol(problem, 1e12) == 1e-13
     forcing.begin()

@@ -6,6 +6,9 @@ import ctypes
 from functools import cache
 from typing import Any
 
+import numpy as np
+
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import MachineError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.machine import MEMORY
@@ -57,6 +60,28 @@ def call_petsc(function: str, *arguments: Any) -> None:
     code = getattr(_petsc_library(), function)(*passed)
     if code != 0:
         raise PETSc.Error(code)
+
+
+def numbers_of(function: str, matrix: Any, count: int) -> tuple[ctypes.c_void_p, Floats]:
+    """The numbers of a matrix where PETSc has them, to read or overwrite.
+
+    Args:
+        function: What gives them, as `MatSeqAIJGetArray`.
+        matrix: A matrix of PETSc, or its handle.
+        count: How many there are.
+
+    Returns:
+        Their address, for what gives them back, and an array that does not own them, (count,).
+
+    Raises:
+        PETSc.Error: It failed.
+    """
+    address = ctypes.c_void_p()
+    call_petsc(function, matrix, ctypes.byref(address))
+    if not count or address.value is None:
+        return address, np.zeros(0)
+    # NumPy makes an array of a pointer by a cast, which refers to itself
+    return address, np.frombuffer((ctypes.c_double * count).from_address(address.value))
 
 
 def pattern_of(matrix: Any) -> tuple[float, int] | None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.base.petsc_calls import call_petsc, has_petsc, pattern_of
+from anisocontact.base.petsc_calls import call_petsc, has_petsc, numbers_of, pattern_of
 
 #: Name of what is left at a matrix to know it again; it goes when the matrix does.
 _MARK = "anisocontact.places"
@@ -127,9 +127,9 @@ def _keyed(rows: Ints, starts: Ints, columns: Ints, width: int) -> tuple[Ints, I
 @contextmanager
 def _entries(matrix: Mat) -> Iterator[Floats]:
     """The entries of a matrix of this process, by rows, to read or overwrite."""
-    entries = ctypes.POINTER(ctypes.c_double)()
-    call_petsc("MatSeqAIJGetArray", matrix, ctypes.byref(entries))
+    count = int(matrix.getInfo()["nz_used"])
+    address, entries = numbers_of("MatSeqAIJGetArray", matrix, count)
     try:
-        yield np.ctypeslib.as_array(entries, (int(matrix.getInfo()["nz_used"]),))
+        yield entries
     finally:
-        call_petsc("MatSeqAIJRestoreArray", matrix, ctypes.byref(entries))
+        call_petsc("MatSeqAIJRestoreArray", matrix, ctypes.byref(address))

@@ -78,7 +78,7 @@ class FacetQuadrature:
         entries = (basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
         return scipy.sparse.csr_array(entries, shape=shape)
 
-    @cached_property
+    @property
     def at_rest(self) -> Surfaced:
         """The facets in the reference configuration."""
         return Surfaced(self, self.tangents)

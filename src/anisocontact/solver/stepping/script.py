@@ -104,7 +104,7 @@ class ContactProblem(AssembledSystem):
     ) -> None:
         space = u.function_space
         unknowns = script_unknowns(contacts, space)
-        self._bodies = moved_bodies(contacts)
+        self._bodies, self._key = moved_bodies(contacts), object()
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
         bodies = Bodies(form, unknowns)
@@ -114,7 +114,7 @@ class ContactProblem(AssembledSystem):
         warn_of_overlaps(contacts)
         self._assembly = script_assembly(bodies, contacts, Dirichlet(self.bcs, space), self._fields)
         self.contact_term = self._assembly.contacts
-        self.balance = ForceBalance.none(self._assembly.layout.owned)
+        self._balance = ForceBalance.none(self._assembly.layout.owned)
         self._fields.measure(bodies)
         self._tangent = Tangent(self._assembly)
         self._unsupported = UnsupportedParts(unknowns, contacts, self._assembly)
@@ -156,7 +156,7 @@ class ContactProblem(AssembledSystem):
         for contact in self.contacts:
             contact.check_at_rest()
         for body in self._bodies:
-            body.check_history(self, "rigid body")
+            body.check_history(self._key, "rigid body")
         self._check_finite()
         terms = self._assembly.terms
         terms.set_load_factor(1.0, dt)
@@ -180,7 +180,7 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
-            body.history_of = self
+            body.history_of = self._key
         return result.iterations
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
@@ -281,7 +281,7 @@ class ContactProblem(AssembledSystem):
         except InputError as error:
             raise InputError(f"'{file}': {error}", "path") from None
         for body in self._bodies:
-            body.history_of = self
+            body.history_of = self._key
 
     def close(self) -> None:
         """Give back the objects of PETSc."""
@@ -311,7 +311,7 @@ class ContactProblem(AssembledSystem):
         """
         self.u.x.array[: x.getLocalSize()] = x.array_r
         self.u.x.scatter_forward()
-        self.balance = self._assembly.balance(TrialState(x, self.nodal, np.zeros(0)))
+        self._balance = self._assembly.balance(TrialState(x, self.nodal, np.zeros(0)))
         return self.balance.residual
 
     def tangent(self, x: Vec, out: Mat) -> bool:

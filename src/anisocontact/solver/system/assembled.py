@@ -17,14 +17,13 @@ class AssembledSystem:
 
     Attributes:
         contact_term: Its contacts as one term, with their multipliers.
-        balance: Forces of the last evaluation.
         outgrown: Whether the last evaluation has no answer since a slave point met a facet out of
             reach, where a system has but some of the unknowns.
     """
 
     outgrown: bool = False
     contact_term: Contacts
-    balance: ForceBalance
+    _balance: ForceBalance
     _aid: Stabilisation | None = None
 
     def corrected(self) -> AbstractContextManager[bool]:
@@ -64,6 +63,11 @@ class AssembledSystem:
         if self._aid is not None and self._aid.flow.flows:
             return self._aid.flow.soften()
         return self.contact_term.soften()
+
+    @property
+    def balance(self) -> ForceBalance:
+        """Forces of the last evaluation."""
+        return self._balance
 
     @property
     def nodal(self) -> Floats:

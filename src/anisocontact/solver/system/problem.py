@@ -12,7 +12,6 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
-from anisocontact.base.unreferenced import collect_unreferenced
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -22,6 +21,7 @@ from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
 from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
+from anisocontact.solver.system.evaluation import Evaluation
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.parts import Connections, make_parts
@@ -71,7 +71,7 @@ class Problem(ReportedSystem):
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
-        balance: Forces of the last evaluation.
+        evaluation: Forces at the state of the last evaluation.
 
     Raises:
         InputError: A body without material, a material without body, two contacts of one name,
@@ -98,7 +98,6 @@ class Problem(ReportedSystem):
         ties: Sequence[Tie] = (),
         cyclic: Sequence[CyclicSymmetry] = (),
     ) -> None:
-        collect_unreferenced()
         connections = Connections(attached, symmetry, coupled, ties, cyclic)
         self._parts = parts = make_parts(model, materials, contacts, connections, stabilised)
         self.model, self.materials = model, dict(materials)
@@ -114,11 +113,11 @@ class Problem(ReportedSystem):
         self._tangent = Tangent(assembly, coupling)
         self._bodies = Configuration(parts)
         self.rotations = Rotations(model, materials)
-        self.balance = ForceBalance.none(self.layout.owned)
+        self.evaluation = Evaluation(assembly, self._bodies)
         self.load_factor = self.dt = 0.0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
-        self.whole = Whole(self, parts, self._bodies, self._accepted)
+        self.whole = Whole(self.evaluation, parts, self._bodies, self._accepted)
         self.reduction: Reduction = self.whole
         self._restart_state = RestartState(assembly.terms, self._accepted, self._bodies)
 
@@ -263,8 +262,7 @@ class Problem(ReportedSystem):
         Returns:
             Residual, force.
         """
-        self.balance = self.assembly.balance(self._bodies.take(x))
-        return self.balance.residual
+        return self.evaluation.evaluate(x).residual
 
     @property
     def in_full(self) -> bool:
@@ -291,13 +289,17 @@ class Problem(ReportedSystem):
 
     @property
     @override
+    def balance(self) -> ForceBalance:
+        return self.evaluation.balance
+
+    @property
+    @override
     def nodal(self) -> Floats:
         return self._bodies.nodal
 
     @override
     def evaluate_at(self, x: Vec) -> None:
-        if not self._bodies.is_at(x):
-            self.evaluate(x)
+        self.evaluation.at(x)
 
     @override
     def _go_on(self, x: Vec) -> None:

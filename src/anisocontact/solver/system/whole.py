@@ -7,8 +7,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.accepted import AcceptedState
-from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.evaluation import Evaluation
 from anisocontact.solver.system.interior import with_interior
 from anisocontact.solver.system.parts import ProblemParts
 from anisocontact.solver.system.rotations import BodyRotation, Rotations
@@ -22,26 +22,25 @@ class Whole:
 
     def __init__(
         self,
-        system: AssembledSystem,
+        evaluation: Evaluation,
         parts: ProblemParts,
         bodies: Configuration,
         accepted: AcceptedState,
     ) -> None:
-        self._system, self._parts = system, parts
+        self._evaluation, self._parts = evaluation, parts
         self._bodies, self._accepted = bodies, accepted
         self._pending: Arrays = {}
 
     def commit(self, x: Vec) -> float:
         """As of `Reduction`."""
-        self._system.evaluate_at(x)
-        balance = self._system.balance
+        balance = self._evaluation.at(x)
         self._accepted.go_on(x, balance.outside)
         self._accepted.take(balance.outside, balance.load)
         return self._accepted.way_work
 
     def nodal(self, x: Vec) -> Floats:
         """As of `Reduction`."""
-        self._system.evaluate_at(x)
+        self._evaluation.at(x)
         return self._bodies.nodal
 
     def displacement(self, x: Vec) -> Floats:
@@ -87,8 +86,7 @@ class Whole:
             self.recover()
             force = self._accepted.reaction
         else:
-            self._system.evaluate_at(x)
-            balance = self._system.balance
+            balance = self._evaluation.at(x)
             force = balance.outside - balance.load
         across, rest = self._parts.guides.forces(force)
         sums = self._parts.supports.reactions(rest)
@@ -106,7 +104,7 @@ class Whole:
         if x is None:
             self.recover()
         else:
-            self._system.evaluate_at(x)
+            self._evaluation.at(x)
         return np.asarray(self._parts.layout.comm.allreduce(weights @ self._bodies.nodal))
 
     def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, BodyRotation]:

@@ -29,6 +29,7 @@ class Contacts(Term):
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._all = list(contacts)
+        self._key = object()
         self._trials = [contact.trials for contact in self._all]
         self.meshed = [contact for contact in self._all if contact.meshed]
         self._smooth = [contact for contact in self._all if not contact.meshed]
@@ -38,7 +39,7 @@ class Contacts(Term):
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         for contact in self._all:
-            contact.check_history(self, "contact")
+            contact.check_history(self._key, "contact")
         self._dt = dt
 
     @override
@@ -76,7 +77,7 @@ class Contacts(Term):
     def accept(self, u: Floats) -> float:
         for contact in self._all:
             contact.commit()
-            contact.history_of = self
+            contact.history_of = self._key
         return 0.0
 
     @override
@@ -100,7 +101,7 @@ class Contacts(Term):
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for contact in self._all:
             contact.restore(next(kept), u)
-            contact.history_of = self
+            contact.history_of = self._key
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""

@@ -64,7 +64,7 @@ class RigidBodies(Term):
         self.free = [body for body in self.bodies if body.free]
         self.contacts = {b: [one for one in on_bodies if one.body is b] for b in self.bodies}
         self.coupled = {b: [face for face in coupled if face.body is b] for b in self.bodies}
-        self._comm = comm
+        self._comm, self._key = comm, object()
         self._drives = {body: Drive(body) for body in self.bodies}
         self._scales = {body: self._scale(body) for body in self.bodies}
         zero = np.zeros((len(self.bodies), 6))
@@ -119,7 +119,7 @@ class RigidBodies(Term):
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         for body in self.bodies:
-            body.check_history(self, "rigid body")
+            body.check_history(self._key, "rigid body")
         self._load_factor = factor
 
     @override
@@ -272,7 +272,7 @@ class RigidBodies(Term):
         work = float(np.sum(0.5 * (self._accepted_outside + self._outside) * (now - before)))
         for body in self.bodies:
             body.commit()
-            body.history_of = self
+            body.history_of = self._key
         self._accepted_outside, self._accepted_of_faces = self._outside, self._of_faces
         self._accepted_load = np.array(
             [self._drives[body].load(self._load_factor) for body in self.bodies]
@@ -307,7 +307,7 @@ class RigidBodies(Term):
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
             body.go_on(values, rotation)
-            body.history_of = self
+            body.history_of = self._key
         self._accepted_outside = kept["rigid.outside"].copy()
         self._accepted_load = kept["rigid.load"].copy()
         self._accepted_of_faces = kept["rigid.faces"].copy()

@@ -12,7 +12,7 @@ import scipy
 
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.base.petsc_calls import call_petsc, has_petsc
+from anisocontact.base.petsc_calls import call_petsc, has_petsc, numbers_of
 from anisocontact.solver.strategies.condensed.border import Border
 from anisocontact.solver.strategies.condensed.diagonal_rows import DiagonalRows
 from anisocontact.solver.strategies.condensed.factor import aij
@@ -127,11 +127,10 @@ class PartialLU:
 
     def _hand_over(self, _: Any, __: Any, values: int) -> int:
         """What MUMPS asks for between its two halves: the border, in place."""
-        handle, entries = ctypes.c_void_p(values), ctypes.POINTER(ctypes.c_double)()
-        call_petsc("MatDenseGetArray", handle, ctypes.byref(entries))
-        border = np.ctypeslib.as_array(entries, (len(self._border),))
+        handle = ctypes.c_void_p(values)
+        address, border = numbers_of("MatDenseGetArray", handle, len(self._border))
         border[:] = self._answer(border)
-        call_petsc("MatDenseRestoreArray", handle, ctypes.byref(entries))
+        call_petsc("MatDenseRestoreArray", handle, ctypes.byref(address))
         return 0
 
 

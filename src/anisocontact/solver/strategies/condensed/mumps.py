@@ -11,7 +11,7 @@ import scipy
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
+from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc, numbers_of
 from anisocontact.solver.strategies.binary_scale import binary_scale
 from anisocontact.solver.strategies.condensed.factor import (
     Eliminated,
@@ -170,7 +170,5 @@ def schur_matrix(factor: Mat, count: int) -> tuple[ctypes.c_void_p, Floats]:
     """PETSc's dense matrix of a factor with a border of `count` unknowns, and its entries."""
     handle, status = ctypes.c_void_p(), ctypes.c_int()
     call_petsc("MatFactorGetSchurComplement", factor, ctypes.byref(handle), ctypes.byref(status))
-    entries = ctypes.POINTER(ctypes.c_double)()
-    call_petsc("MatDenseGetArrayRead", handle, ctypes.byref(entries))
-    by_columns: Any = np.ctypeslib.as_array(entries, (count, count))
-    return handle, np.asarray(by_columns.T)
+    _, entries = numbers_of("MatDenseGetArrayRead", handle, count * count)
+    return handle, entries.reshape(count, count).T

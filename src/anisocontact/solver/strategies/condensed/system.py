@@ -77,7 +77,7 @@ class ContactSystem(AssembledSystem):
             [np.zeros(0), *(np.diagonal(block) for _, block in bulk.blocks)]
         )
         self.solver = KeptFactor(self._tangent)
-        self.balance = ForceBalance.none(len(self.places))
+        self._balance = ForceBalance.none(len(self.places))
         self.outgrown = False
         self.way: list[InteriorState] = []
         self.forcing = Forcing(TOLERANCE)
@@ -158,7 +158,7 @@ class ContactSystem(AssembledSystem):
         forces = self.forces + self.handed(aids.reshape(-1))
         residual = self.bulk.schur_times(own) - self._g - forces[self.bulk.contact]
         of_bodies = self._rigid.residual(self._values, 1.0)[~self.prescribed]
-        self.balance = closed(
+        self._balance = closed(
             np.concatenate([residual, of_bodies]),
             self._magnitudes(own),
             MPI.COMM_SELF,
