@@ -14,7 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.newton import Newton
-from anisocontact.solver.strategies.residual_history import STUCK_OVER
+from anisocontact.solver.strategies.residual_history import PATIENCE, STUCK_OVER
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 
@@ -175,3 +175,38 @@ def test_what_rounding_leaves_is_told_over_what_was_rounded():
     newton.close()
     assert not result.reason
     assert result.residuals == pytest.approx([5e-9])
+
+
+@pytest.mark.parametrize(
+    ("factor", "options", "most"),
+    [
+        (0.9, {}, 100),  # halved in eight corrections: it is waited for
+        (0.95, {}, PATIENCE),
+        (0.9, {"snes_max_it": 40}, 40),
+        (0.95, {"snes_max_it": 100}, 100),
+    ],
+)
+def test_a_residual_that_falls_is_waited_for(
+    factor: float, options: dict[str, Any], most: int
+) -> None:
+    """A tangent that is too stiff: every correction takes the same share of the residual away.
+
+    Requirement: corrections go on beyond the usual number while they halve the residual in eight,
+    and options alone say how many there are if they do.
+    """
+
+    class Stiff(Valley):
+        def evaluate(self, x: Vec) -> np.ndarray:
+            return np.array(x.array_r)
+
+        def tangent(self, x: Vec, out: Mat) -> bool:
+            out.setValues([0, 1], [0, 1], (np.eye(2) / (1.0 - factor)).ravel())
+            out.assemble()
+            return False
+
+    system = Stiff(1.0)
+    newton = _newton(system, snes_rtol=1e-30, **options)
+    result = newton.solve(_at(system, 1.0, 1.0), full_steps=True)
+    newton.close()
+    assert result.iterations == most
+    assert result.reason.startswith(f"no convergence in {most} Newton iterations")

@@ -16,7 +16,7 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.strategies.database import Database, OptionValue
-from anisocontact.solver.strategies.residual_history import ResidualHistory
+from anisocontact.solver.strategies.residual_history import PATIENCE, ResidualHistory
 from anisocontact.solver.strategies.symmetric import check_symmetric
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
@@ -42,7 +42,8 @@ _UNFIT = {
 }
 #: Residual over the forces at work at which an increment is accepted.
 TOLERANCE = 1e-8
-MAX_ITERATIONS = 25
+#: Corrections at most, unless options say how many.
+MOST_ITERATIONS = 100
 
 
 class System(Protocol):
@@ -167,18 +168,18 @@ class Newton:
     ) -> None:
         self._problem = problem
         self._on_iteration = on_iteration
-        self._history = ResidualHistory(problem.contact_term)
         self._damping: Callable[[], float] | None = None
         self._search = Backtracking(problem)
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
         self.snes.setJacobian(self._jacobian, problem.new_tangent())
-        self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MAX_ITERATIONS)
+        self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MOST_ITERATIONS)
         # Some options, such as those of MUMPS, are read when they are first needed, in `solve`.
         self._database = Database(prefix, DEFAULTS | dict(options))
         with self._database:
             self.snes.setFromOptions()
+            given = PETSc.Options(prefix).hasName("snes_max_it")
             self.snes.getKSP().setFromOptions()
             self.snes.getKSP().getPC().setFromOptions()
         if why := _UNFIT.get(self.snes.getType()):
@@ -187,6 +188,8 @@ class Newton:
         self.snes.setConvergenceTest(self._converged)
         self.snes.setLineSearchPreCheck(self._damp)
         self._line_search = self.snes.getLineSearch().getType()
+        self._patience = self.snes.getTolerances()[3] if given else PATIENCE
+        self._history = ResidualHistory(problem.contact_term, self._patience)
 
     def persistent(self) -> Arrays:
         """Nothing is kept from one solution to the next."""
@@ -261,7 +264,7 @@ class Newton:
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
-        self._history = ResidualHistory(self._problem.contact_term)
+        self._history = ResidualHistory(self._problem.contact_term, self._patience)
         self._search.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()

@@ -18,6 +18,8 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
+#: Corrections after which only a residual that falls is waited for.
+PATIENCE = 25
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
 
@@ -27,12 +29,14 @@ class ResidualHistory:
 
     Args:
         contacts: The contacts, whose multipliers may follow every correction.
+        patience: Corrections after which only a residual that falls is waited for.
 
     Attributes:
         residuals: Residual over the forces at work, of the start and after each correction.
     """
 
-    def __init__(self, contacts: Contacts) -> None:
+    def __init__(self, contacts: Contacts, patience: float = PATIENCE) -> None:
+        self._patience = patience
         self.residuals: list[float] = []
         self._contacts = contacts
         self._touching: list[int] = []
@@ -52,6 +56,8 @@ class ResidualHistory:
             return reasons.DIVERGED_LOCAL_MIN
         if not (searching or damped) and self._cycles():
             return reasons.DIVERGED_MAX_IT
+        if len(self.residuals) > self._patience and not self._falls():
+            return reasons.DIVERGED_MAX_IT
         return reasons.DIVERGED_LINE_SEARCH if searching and self._stuck() else None
 
     def _idles(self) -> bool:
@@ -65,7 +71,19 @@ class ResidualHistory:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
         searches = lately == 0 or lately > before or self._slips_on()
-        return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+        if searches or self._falls():
+            return False
+        return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+
+    def _falls(self) -> bool:
+        """Whether it falls with every correction, and by half over some.
+
+        So it does where the edge of a contact runs along a slender body, which bends: by a point in
+        each correction, as what opens next hangs on what has opened.
+        """
+        known = self.residuals
+        halved = len(known) > STUCK_OVER and known[-1] <= STUCK * known[-1 - STUCK_OVER]
+        return bool(halved and np.all(np.diff(known[-IDLE_OVER - 1 :]) < 0.0))
 
     def _slips_on(self) -> bool:
         """Whether the edge of what sticks moves on, by a point in nearly every correction."""

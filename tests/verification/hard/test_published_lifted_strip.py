@@ -1,0 +1,81 @@
+"""A heavy strip on a floor is lifted at its end: the edge of its contact runs along it.
+
+An elastica that is hardly inclined, free of its floor over the length l: no moment where it leaves
+the floor and none at the end that is lifted by d, so that half of the weight of that length is
+carried by the end [S. P. Timoshenko, Strength of Materials II, beams on a rigid foundation],
+
+    d = w l^4 / (24 E I) ,  F = w l / 2 .
+
+At the place where it leaves the floor a force w l / 2 acts as well, so that the strip is pressed
+down by a single point there and stands clear of the floor beside it: points open one after the
+other as Newton's method corrects, whatever the increment.
+
+Bilinear cells of the length a lock in bending by their shear, G h a^2 / 12 is added to E I without
+Poisson's ratio: with cells as long as the strip is high it is half as stiff again.
+
+Requirement: the force, without a cut, with friction and without. Tolerances: the force to 1e-3, as
+the free length is known to a cell in eighty; corrections as counted, and a tenth.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.case import load
+from anisocontact.case.build import build
+
+LENGTH, HEIGHT, YOUNG, WEIGHT, LIFT = 40.0, 0.5, 1e4, 1e-3, 0.0625
+CASE = f"""
+title = "Lifted strip"
+[idealisation]
+kind = "plane-strain"
+[mesh.rectangle.strip]
+origin = [0, 0]
+size = [{LENGTH}, {HEIGHT}]
+cells = [80, 4]
+[material.strip]
+model = "linear-elastic"
+E = {YOUNG}
+nu = 0
+[surface.floor]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+[[contact]]
+slave = "strip.bottom"
+master = "floor"
+method = "augmented"
+friction = {{ coefficients = [FRICTION, FRICTION] }}
+[[step]]
+name = "weight"
+increments = 1
+body_force = {{ strip = {{ y = -{WEIGHT} }} }}
+displacement = {{ "strip.left" = {{ x = 0 }} }}
+[[step]]
+name = "lift"
+increments = 1
+displacement = {{ "strip.right" = {{ y = {LIFT} }} }}
+[solver]
+strategy = "direct"
+options = {{ snes_rtol = 1e-10 }}
+"""
+
+
+@pytest.mark.parametrize(("friction", "most"), [(0.0, 145), (0.3, 212)])
+def test_force_that_lifts(friction: float, most: int, tmp_path: Path) -> None:
+    """One increment, which opens fifty cells at once."""
+    (tmp_path / "case.toml").write_text(CASE.replace("FRICTION", str(friction)))
+    built = build(load(tmp_path / "case.toml"))
+    cuts: list[Any] = []
+    *_, lifted = built.solver.run(on_cut=cuts.append, on_warning=lambda _: None)
+    assert not cuts
+    weight, bending = WEIGHT * HEIGHT, YOUNG * HEIGHT**3 / 12.0
+    locked = bending + 0.5 * YOUNG * HEIGHT * (LENGTH / 80.0) ** 2 / 12.0
+    free = (24.0 * locked * LIFT / weight) ** 0.25
+    assert lifted.reactions["strip.right"][1] == pytest.approx(0.5 * weight * free, rel=1e-3)
+    assert lifted.iterations <= most
