@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 
-type Arrays = Mapping[str, npt.NDArray[Any]]
+type NamedArrays = Mapping[str, npt.NDArray[Any]]
 
 #: Types of VTK by those of NumPy.
 _TYPES = {
@@ -32,7 +32,7 @@ _HEAD = (
     '<?xml version="1.0"?>\n<VTKFile type="{kind}" version="2.2" byte_order="LittleEndian" '
     'header_type="UInt32" compressor="vtkZLibDataCompressor">'
 )
-_NO_ARRAYS: Arrays = {}
+_NO_ARRAYS: NamedArrays = {}
 #: Sorts of cells that are read.
 _CELLS = ("Cells", "Verts", "Lines", "Polys")
 
@@ -59,9 +59,9 @@ class DataSet:
 
     kind: str
     points: Floats
-    cells: Mapping[str, Arrays]
-    point_data: Arrays
-    cell_data: Arrays = field(default_factory=lambda: _NO_ARRAYS)
+    cells: Mapping[str, NamedArrays]
+    point_data: NamedArrays
+    cell_data: NamedArrays = field(default_factory=lambda: _NO_ARRAYS)
 
     def encoded(self) -> bytes:
         """Content of a file of this data set alone, its arrays compressed where they stand."""
@@ -125,7 +125,7 @@ def read_data_set(path: Path) -> DataSet:
 def _put_together(parts: Sequence[DataSet]) -> DataSet:
     """Pieces as one data set."""
     first = np.cumsum([0] + [len(p.points) for p in parts])
-    cells: dict[str, Arrays] = {}
+    cells: dict[str, NamedArrays] = {}
     for name in parts[0].cells:
         own = [p.cells[name] for p in parts]
         ends = np.cumsum([0] + [len(c["connectivity"]) for c in own])
@@ -145,12 +145,12 @@ def _put_together(parts: Sequence[DataSet]) -> DataSet:
     return DataSet(parts[0].kind, points, cells, at_points, at_cells)
 
 
-def vertices(points: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
+def vertices(points: npt.NDArray[np.integer[Any]]) -> dict[str, NamedArrays]:
     """Cells of `DataSet` that show each of some points, (points,)."""
     return {"Verts": _in_a_row(points[:, None])}
 
 
-def polygons(*corners: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
+def polygons(*corners: npt.NDArray[np.integer[Any]]) -> dict[str, NamedArrays]:
     """Cells of `DataSet` with the given points in order around each of them, (cells, corners).
 
     Those of two points are lines.
@@ -161,7 +161,7 @@ def polygons(*corners: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
     return {kind: _in_a_row(*cells) for kind, cells in kinds.items() if cells}
 
 
-def _in_a_row(*cells: npt.NDArray[np.integer[Any]]) -> Arrays:
+def _in_a_row(*cells: npt.NDArray[np.integer[Any]]) -> NamedArrays:
     """Points of all cells, and where each begins."""
     sizes = np.concatenate([np.full(len(one), one.shape[1]) for one in cells])
     return {

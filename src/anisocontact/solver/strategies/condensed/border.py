@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Flags, Floats, Sparse
 from anisocontact.solver.strategies.condensed.factor import singular
-from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse, whole
+from anisocontact.solver.strategies.condensed.front import Front, Reals, whole
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 from anisocontact.solver.strategies.costs import operation_cost
 

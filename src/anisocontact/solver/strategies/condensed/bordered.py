@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.petsc_calls import call_petsc, has_petsc, numbers_of
 from anisocontact.solver.strategies.condensed.border import Border
 from anisocontact.solver.strategies.condensed.diagonal_rows import DiagonalRows
 from anisocontact.solver.strategies.condensed.factor import aij
-from anisocontact.solver.strategies.condensed.front import Reals, Sparse, whole
+from anisocontact.solver.strategies.condensed.front import Reals, whole
 from anisocontact.solver.strategies.condensed.interior import Interior
 from anisocontact.solver.strategies.condensed.mumps import schur_matrix
 from anisocontact.solver.strategies.costs import factorisation_cost

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap, OppositeNodes
-from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse, follow
+from anisocontact.solver.strategies.condensed.front import Front, Reals, follow
 
 Block = tuple[slice, Floats]
 

@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Ints
-from anisocontact.solver.strategies.condensed.front import Sparse
+from anisocontact.base.array_types import Floats, Ints, Sparse
 
 
 class DiagonalRows:

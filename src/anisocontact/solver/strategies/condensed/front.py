@@ -15,12 +15,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.array_types import Flags, Ints
+from anisocontact.base.array_types import Flags, Ints, Sparse
 from anisocontact.base.blas_threads import shared
 
 #: Single or double precision.
 Reals = npt.NDArray[Any]
-type Sparse = Any  # scipy.sparse.csr_array
 
 #: Rows or columns of a dense matrix in one product.
 _AT_ONCE = 512

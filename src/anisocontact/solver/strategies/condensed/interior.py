@@ -6,11 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from anisocontact.base.array_types import Ints
+from anisocontact.base.array_types import Ints, Sparse
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.factor import singular
-from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.mumps import (
     TOO_SMALL,
     WORKSPACE,

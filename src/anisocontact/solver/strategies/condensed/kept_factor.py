@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Sparse
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
-from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse
+from anisocontact.solver.strategies.condensed.front import Front, Reals
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.steps import (
-    Step,
+    KrylovStep,
     step_against_masters,
     step_of_changes,
 )
@@ -290,7 +290,9 @@ class KeptFactor:
         self._renewal.add(patience - most, left)
         return x, left
 
-    def _krylov(self, step: Step, b: Reals, goal: float, most: int) -> tuple[Reals, float, int]:
+    def _krylov(
+        self, step: KrylovStep, b: Reals, goal: float, most: int
+    ) -> tuple[Reals, float, int]:
         """As `gmres` of a right-hand side of norm one, in the basis of the tangent."""
         basis = self._tangent.basis
         if basis is None:

@@ -6,11 +6,10 @@ from typing import Protocol
 
 import scipy
 
-from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.array_types import Floats, Ints, Sparse
 from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.border import PARTS
 from anisocontact.solver.strategies.condensed.bordered import BorderedLU
-from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays

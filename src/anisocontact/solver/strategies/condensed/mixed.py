@@ -13,9 +13,8 @@ from collections.abc import Callable
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Sparse
 from anisocontact.bulk.pressures import OF_BOTH, VolumeRows
-from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.system.problem import Problem
 

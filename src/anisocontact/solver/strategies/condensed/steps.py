@@ -10,10 +10,10 @@ from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.front import Front, Reals, difference
 from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 
-Step = Callable[[Reals], tuple[Reals, Reals]]
+KrylovStep = Callable[[Reals], tuple[Reals, Reals]]
 
 
-def step_of_changes(front: Front, factor: UpdatedFactor, tangent: ContactTangent) -> Step:
+def step_of_changes(front: Front, factor: UpdatedFactor, tangent: ContactTangent) -> KrylovStep:
     """On all unknowns, where nothing is eliminated, (c,).
 
     With the factor of `M = S' + K` of an earlier K the product is `A M^-1 v = v + (C - K) M^-1 v`.
@@ -28,7 +28,9 @@ def step_of_changes(front: Front, factor: UpdatedFactor, tangent: ContactTangent
     return step
 
 
-def step_against_masters(front: Front, factor: UpdatedFactor, tangent: ContactTangent) -> Step:
+def step_against_masters(
+    front: Front, factor: UpdatedFactor, tangent: ContactTangent
+) -> KrylovStep:
     """On all unknowns, where slave nodes move on over their masters, (c,).
 
     With the factor of M = T^-T (S' + K) T^-1, S' = T^T S T, of an earlier P and K, and with E

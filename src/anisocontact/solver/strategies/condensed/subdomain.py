@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.array_types import Floats, Ints, Sparse
 from anisocontact.base.fenicsx import MPI, Mat
 from anisocontact.solver.strategies.condensed.border import Border
 from anisocontact.solver.strategies.condensed.bordered import PartialLU
 from anisocontact.solver.strategies.condensed.factor import singular
-from anisocontact.solver.strategies.condensed.front import Reals, Sparse
+from anisocontact.solver.strategies.condensed.front import Reals
 from anisocontact.solver.terms.term import SingularError
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.contact.remote_nodes import globally
 from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap
-from anisocontact.solver.strategies.condensed.front import Sparse, whole
+from anisocontact.solver.strategies.condensed.front import whole
 from anisocontact.solver.system.problem import Problem
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Ints
-from anisocontact.solver.strategies.condensed.front import Reals, Sparse, difference, factorised
+from anisocontact.base.array_types import Ints, Sparse
+from anisocontact.solver.strategies.condensed.front import Reals, difference, factorised
 
 #: Shares of the largest entry of its column in the factor that an entry has to change by to count:
 #: the first with which columns are not too many. What changes less is left to Krylov iterations.
