@@ -24,6 +24,7 @@ from anisocontact.mesh import (
 )
 from anisocontact.solver import Cut, Problem, Solver, Step, StoppedError
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
+from anisocontact.solver.system.culprit import LostError
 from anisocontact.solver.terms.free_modes import bodies, free_modes, named
 from anisocontact.surfaces import make_surface
 
@@ -395,3 +396,40 @@ def test_bodies_that_only_touch_each_other_are_refused_before_the_run() -> None:
     )
     with pytest.raises(InputError, match=said):
         Solver(problem, [step])
+
+
+@pytest.mark.parametrize(("way", "gone"), [(0.5, False), (2.5, False), (50.0, True)])
+@pytest.mark.parametrize("base", [False, True])
+def test_a_body_that_flows_off_all_it_could_touch_is_given_up(
+    base: bool, way: float, gone: bool
+) -> None:
+    """A block is thrown up from a plane, which goes on for ever, and from a base, which does not.
+
+    Requirement: a flow ends where a body is farther off than the mesh is large with no master below
+    it, and says which and how far; nothing ends it where it can come back. Before, a nut that ran
+    down its screw took thousands of corrections, a million of its lengths away.
+    """
+    problem, held = _block(0.0), {}
+    if base:
+        upper, lower = (
+            BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2)),
+            BoxSpec((-1, -1, -1), (3, 3, 1), (5, 5, 1)),
+        )
+        model = build_box({"block": upper, "base": lower})
+        contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+        elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
+        problem, held = Problem(model, dict.fromkeys(model.body_names(), elastic), [contact]), CLAMP
+    problem.begin(Step("press", 1, held, {"block.top": {"z": -10.0}}))
+    problem.set_load_factor(1.0, 1.0)
+    problem.stabilisation.flow.start(problem.nodal)
+    x = problem.new_vector()
+    thrown = np.zeros((len(x.array_r) // 3, 3))
+    (block,) = [one for one in bodies(problem.model) if one.name == "block"]
+    thrown[block.nodes, 2] = way
+    x.array[:] = thrown.ravel()
+    if not (gone and base):
+        problem.evaluate_at(x)
+        assert problem.stabilisation.flown_off(problem.nodal) is None
+        return
+    with pytest.raises(LostError, match="body 'block' has lost all contact, 50 from where it was"):
+        problem.improve(x)

@@ -9,6 +9,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
+from anisocontact.solver.terms.free_body import FreeBody
 from anisocontact.solver.terms.stabilisation import Stabilisation
 
 
@@ -44,6 +45,9 @@ class AssembledSystem:
         aid, moved = self._aid, False
         if aid is not None:
             wrong = self.behind_a_master(x) if aid.flow.flows else None
+            gone = aid.flown_off(self.nodal) if aid.flow.flows else None
+            if gone is not None:
+                wrong = _gone(*gone)
             if wrong is not None:
                 raise LostError(wrong)
             moved = aid.improve(self.nodal, self.balance.force_scale)
@@ -84,3 +88,10 @@ class AssembledSystem:
 
     def _go_on(self, x: Vec) -> None:
         """Take note of an equilibrium on the way to the one that will be accepted."""
+
+
+def _gone(free: FreeBody, way: float) -> Culprit:
+    """A body that has flown off, and how far."""
+    x, y, z = free.body.centre.tolist()
+    why = f"body {free.body.name!r} has lost all contact, {way:.3g} from where it was: {free.modes}"
+    return Culprit("behind", (x, y, z), why, free.contacts[0].name)

@@ -83,6 +83,8 @@ class Stabilisation(Term):
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
+        farthest = self._comm.allgather(float(np.abs(model.positions).max(initial=0.0)))
+        self._extent = 2.0 * max(farthest)
         self._attached = attached
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
@@ -323,6 +325,25 @@ class Stabilisation(Term):
             gone = [one for one in gone if self._far(one, u, explained)]
         gone = [one for one in gone if self._carries_nothing(one, u)]
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
+
+    def flown_off(self, u: Floats) -> tuple[FreeBody, float] | None:
+        """A body in a flow that nothing can stop any more, and how far it has come; collective.
+
+        None of its points has anything of a master below it, and it has come farther than the whole
+        mesh is large.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+        """
+        for free in self._loose:
+            nodes = free.body.nodes
+            way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
+            below = any([bool(c.located().any()) for c in free.contacts])
+            every = self._comm.allgather((float(way), below))
+            farthest = max(one for one, _ in every)
+            if farthest > self._extent and not any(here for _, here in every):
+                return free, farthest
+        return None
 
     def _carries_nothing(self, free: FreeBody, u: Floats) -> bool:
         """Whether contact carries neither the loads on a body nor more than round-off."""
