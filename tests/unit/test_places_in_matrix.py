@@ -5,7 +5,8 @@ import pytest
 import scipy
 
 from anisocontact.base.compiled_forms import compiled
-from anisocontact.base.fenicsx import PETSc, assemble_into, create_stiffness, fem, ufl
+from anisocontact.base.fenicsx import PETSc, assemble_into, fem, ufl
+from anisocontact.base.form_rows import create_stiffness
 from anisocontact.base.places_in_matrix import PlacesInMatrix
 from anisocontact.mesh import BoxSpec, build_box
 

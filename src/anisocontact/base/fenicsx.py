@@ -63,8 +63,8 @@ __all__ = [
     "cell_permutation",
     "corner_weights",
     "create_force",
+    "create_form_matrix",
     "create_mesh",
-    "create_stiffness",
     "curved_gradients",
     "dolfinx",
     "facet_keys",
@@ -161,24 +161,27 @@ def _lagrange(cell: str, degree: int) -> Any:
     return basix.create_element(basix.ElementFamily.P, basix.CellType[cell], degree, variant)
 
 
-def locate_entities(mesh: Any, dim: int, nodes: Ints, values: Locals) -> tuple[Locals, Locals]:
-    """Local entities with the given nodes and the value of each.
+def locate_entities(
+    mesh: Any, dim: int, nodes: Ints, values: Locals
+) -> tuple[Locals, Locals, bool]:
+    """Local entities with the given nodes and the value of each; collective.
 
     Args:
         mesh: DOLFINx mesh.
         dim: Topological dimension of the entities.
         nodes: Input numbers of the nodes of each entity, (entities, nodes).
-        values: A number for each entity, (entities,). Collective: other ranks may pass none.
+        values: A number for each entity, (entities,). Other ranks may pass none.
 
     Returns:
-        Local indices (sorted) and values.
+        Local indices (sorted), values, and whether every entity has been given once, on all ranks.
     """
     mesh.topology.create_connectivity(dim, mesh.topology.dim)
     vertices, local = io.distribute_entity_data(mesh, dim, nodes, values)
     tags = dmesh.meshtags_from_entities(
         mesh, dim, graph.adjacencylist(vertices), local.astype(np.int32, copy=False)
     )
-    return tags.indices, tags.values
+    once = mesh.comm.allreduce(len(tags.indices) == len(vertices), MPI.LAND)
+    return tags.indices, tags.values, bool(once)
 
 
 def closest_cells(mesh: Any, points: Floats) -> tuple[Locals, Floats]:
@@ -263,26 +266,9 @@ def corner_weights(space: Any) -> tuple[Ints, Floats]:
     return np.arange(corners, element.dim), np.rint(weights * 8.0) / 8.0
 
 
-def create_stiffness(form: Any) -> Mat:
-    """Assembled matrix of a bilinear form, without boundary conditions.
-
-    Rows that are emptied later keep their place in the pattern, so that one symbolic
-    factorisation serves a whole run. On one process DOLFINx sums the matrices of the cells into
-    rows of its own, which go over whole: PETSc takes twice as long to insert each of them. It has
-    no such rows where they have more components than columns, or fewer.
-    """
-    matrix = cpp.fem.petsc.create_matrix(form._cpp_object, None)
-    sizes = {space.dofmap.index_map_bs for space in form.function_spaces}
-    if form.mesh.comm.size == 1 and len(sizes) == 1:
-        rows = fem.create_matrix(form, la.BlockMode.expanded)
-        fem.assemble_matrix(rows, form)
-        sides = [side.astype(PETSc.IntType, copy=False) for side in (rows.indptr, rows.indices)]
-        matrix.setValuesCSR(*sides, rows.data)
-    else:
-        assemble_into(matrix, form)
-    matrix.assemble()
-    matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
-    return matrix
+def create_form_matrix(form: Any) -> Mat:
+    """Matrix with the pattern of a bilinear form, not assembled yet."""
+    return cpp.fem.petsc.create_matrix(form._cpp_object, None)
 
 
 def create_force(form: Any) -> Vec:

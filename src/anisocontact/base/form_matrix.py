@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec, assemble_into, create_stiffness, fem, la
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.form_rows import FormRows, create_stiffness
 from anisocontact.base.places_in_matrix import PlacesInMatrix
 
 
 class FormMatrix:
     """A bilinear form, assembled anew wherever its coefficients have changed.
 
-    On one process DOLFINx puts the matrices of the cells into rows of its own, in a third of the
-    time that PETSc takes for it; from there entries are copied to where PETSc has them.
+    DOLFINx puts the matrices of the cells into rows of its own, in a third of the time that PETSc
+    takes for it; from there entries are copied to where PETSc has them.
 
     Args:
         form: The compiled form.
@@ -36,23 +37,13 @@ class FormMatrix:
     """
 
     def __init__(self, form: Any) -> None:
-        self._form = form
         self.matrix: Mat = create_stiffness(form)
-        self._rows: Any = None
-        self._wrapped: Mat
-        if form.mesh.comm.size > 1:
-            self._wrapped = self.matrix.duplicate()
-        else:
-            self._rows = fem.create_matrix(form, la.BlockMode.expanded)
-            parts = (self._rows.indptr, self._rows.indices)
-            sides = [side.astype(PETSc.IntType) for side in parts]
-            sizes = self.matrix.getSizes()
-            csr = (*sides, self._rows.data)
-            self._wrapped = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
-            self._places = PlacesInMatrix(self._wrapped)
+        self._rows = FormRows(form)
+        self._wrapped: Mat = self._rows.matrix()
+        self._places = PlacesInMatrix(self._wrapped)
 
     def write(self, out: Mat, *, again: bool = False) -> None:
-        """Write the matrix into one that has room for it, assembled.
+        """Write the matrix into one that has room for it, assembled; collective.
 
         Args:
             out: Where to.
@@ -60,20 +51,10 @@ class FormMatrix:
         """
         out.zeroEntries()
         if not again:
-            self._assemble()
-        if self._rows is None or not self._places.copy(out):
+            self._rows.update(self._wrapped)
+        if not self._places.copy(out):
             add_matrix(out, self._wrapped)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
-
-    def _assemble(self) -> None:
-        """Take the coefficients of now."""
-        if self._rows is None:
-            self._wrapped.zeroEntries()
-            assemble_into(self._wrapped, self._form)
-        else:
-            self._rows.data[:] = 0.0
-            fem.assemble_matrix(self._rows, self._form)
-        self._wrapped.assemble()
 
     def times(self, x: Vec, out: Vec) -> None:
         """The product of what was last written with a vector."""

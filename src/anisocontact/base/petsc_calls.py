@@ -78,10 +78,22 @@ def numbers_of(function: str, matrix: Any, count: int) -> tuple[ctypes.c_void_p,
     """
     address = ctypes.c_void_p()
     call_petsc(function, matrix, ctypes.byref(address))
+    return address, array_at(address, count, np.float64)
+
+
+def array_at(address: ctypes.c_void_p, count: int, of: Any) -> Any:
+    """An array that does not own its numbers, as PETSc has them.
+
+    Args:
+        address: Where they are.
+        count: How many there are.
+        of: Their type of NumPy.
+    """
     if not count or address.value is None:
-        return address, np.zeros(0)
+        return np.zeros(0, dtype=of)
     # NumPy makes an array of a pointer by a cast, which refers to itself
-    return address, np.frombuffer((ctypes.c_double * count).from_address(address.value))
+    kind = np.ctypeslib.as_ctypes_type(of)
+    return np.frombuffer((kind * count).from_address(address.value), dtype=of)
 
 
 def pattern_of(matrix: Any) -> tuple[float, int] | None:

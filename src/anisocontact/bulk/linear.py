@@ -9,8 +9,9 @@ from typing import Any
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
-from anisocontact.base.fenicsx import Mat, Vec, create_stiffness, fem, ufl
+from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
+from anisocontact.base.form_rows import create_stiffness
 from anisocontact.base.places_in_matrix import PlacesInMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals

@@ -27,8 +27,9 @@ import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
-from anisocontact.base.fenicsx import Mat, Vec, assemble_into, basix, create_stiffness, fem, ufl
+from anisocontact.base.fenicsx import Mat, Vec, assemble_into, basix, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
+from anisocontact.base.form_rows import create_stiffness
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.volume import volume_of
 from anisocontact.mesh import Model

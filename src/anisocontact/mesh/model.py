@@ -350,13 +350,14 @@ class Model:
 
 
 def _located(mesh: Any, dim: int, groups: Mapping[str, Ints]) -> dict[str, Locals]:
-    """Local entities of each group, from the nodes of each of its entities."""
-    if mesh.comm.size == 1 and groups:
-        rows = np.concatenate(list(groups.values()))
-        numbers = np.repeat(np.arange(len(groups), dtype=np.int32), [*map(len, groups.values())])
-        found, of_group = locate_entities(mesh, dim, rows, numbers)
-        if len(found) == len(rows):  # none is in two groups
-            return {name: found[of_group == i] for i, name in enumerate(groups)}
+    """Local entities of each group, from the nodes of each of its entities; collective."""
+    if not groups:
+        return {}
+    rows = np.concatenate(list(groups.values()))
+    numbers = np.repeat(np.arange(len(groups), dtype=np.int32), [*map(len, groups.values())])
+    found, of_group, once = locate_entities(mesh, dim, rows, numbers)
+    if once:  # none is in two groups
+        return {name: found[of_group == i] for i, name in enumerate(groups)}
     return {
         name: locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))[0]
         for name, nodes in groups.items()

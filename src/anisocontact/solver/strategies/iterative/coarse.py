@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import pattern_of
+from anisocontact.base.places_in_matrix import PlacesInMatrix
 from anisocontact.solver.strategies.iterative.split import sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
@@ -39,6 +40,28 @@ class Inverse(Protocol):
 
     def destroy(self) -> None:
         """Give back PETSc's objects."""
+
+
+class _Summand:
+    """A matrix that is added to another one again and again, while both keep their patterns.
+
+    Args:
+        matrix: The matrix, which is taken over.
+    """
+
+    def __init__(self, matrix: Mat) -> None:
+        self.matrix = matrix
+        self._places = PlacesInMatrix(matrix)
+
+    def add_to(self, out: Mat) -> None:
+        """Add the matrix of now to one that has room for it."""
+        if not self._places.add(out):
+            subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+            out.axpy(1.0, self.matrix, structure=subset)
+
+    def destroy(self) -> None:
+        """Give back PETSc's object."""
+        self.matrix.destroy()
 
 
 class CoarseLevel:
@@ -72,13 +95,13 @@ class CoarseLevel:
         self._pattern: tuple[float, int] | None = None
         self._of_product: tuple[float, int] | None = None
         self._block: Mat | None = None
-        self._contact: Mat | None = None
+        self._contact: _Summand | None = None
         self._matrix: Mat | None = None
         self._make_inverse = inverse
         self._inverse: Inverse | None = None
         self._right, self._correction = prolong.createVecs()
         self._product: Mat | None = None
-        self._bodies, self._other_bodies = self._without_contact(matrix), False
+        self._bodies, self._other_bodies = _Summand(self._without_contact(matrix)), False
         self._forget_product()  # it keeps copies of P, and linear bodies need none again
 
     @property
@@ -90,7 +113,7 @@ class CoarseLevel:
     def renew_bodies(self, matrix: Mat) -> None:
         """Take bodies that have changed."""
         self._bodies.destroy()
-        self._bodies, self._other_bodies = self._without_contact(matrix), True
+        self._bodies, self._other_bodies = _Summand(self._without_contact(matrix)), True
 
     def outgrow(self) -> None:
         """Take it that the next matrix is a new one with other entries."""
@@ -99,19 +122,19 @@ class CoarseLevel:
 
     def renew(self, matrix: Mat) -> bool:
         """Take the contact of a matrix of the finer level; whether there is an inverse."""
-        self._take_contact(matrix)
+        contact = self._take_contact(matrix)
         grown, self._grown = self._grown, False
         if self._matrix is None or grown:
             if self._matrix is not None:
                 self._matrix.destroy()
-            self._matrix = self._bodies.copy()
+            self._matrix = self._bodies.matrix.copy()
             different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
-            self._matrix.axpy(1.0, self._contact, structure=different)
+            self._matrix.axpy(1.0, contact.matrix, structure=different)
         else:
-            subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
             self._matrix.zeroEntries()
-            for part in (self._bodies, self._contact):
-                self._matrix.axpy(1.0, part, structure=subset)
+            for part in (self._bodies, contact):
+                part.add_to(self._matrix)
+            self._matrix.assemble()
         if self._inverse is None:
             self._inverse = self._make_inverse(self._matrix)
         bodies, self._other_bodies = self._other_bodies, False
@@ -132,8 +155,8 @@ class CoarseLevel:
             if part is not None:
                 part.destroy()
 
-    def _take_contact(self, matrix: Mat) -> None:
-        """Set `E^T A_pp E`."""
+    def _take_contact(self, matrix: Mat) -> _Summand:
+        """`E^T A_pp E` of now."""
         pattern = pattern_of(matrix)
         if pattern is None or pattern != self._pattern:
             self._pattern, self._grown = pattern, True
@@ -142,7 +165,11 @@ class CoarseLevel:
                     part.destroy()
             self._block = self._contact = None
         self._block = matrix.createSubMatrix(self._patch, self._patch, self._block)
-        self._contact = self._block.ptap(self._lift, self._contact)
+        if self._contact is None:
+            self._contact = _Summand(self._block.ptap(self._lift))
+        else:
+            self._block.ptap(self._lift, self._contact.matrix)
+        return self._contact
 
     def _galerkin(self, matrix: Mat) -> Mat:
         """`P^T A P`, in the places of the last one while the pattern of A stays."""
@@ -168,9 +195,9 @@ class CoarseLevel:
         (own, _), _ = whole.getSizes()
         at = (idle, whole.getOwnershipRange()[0] + idle)
         unit = sparse(own, own, comm, at, np.full(len(idle), self._scale))
-        self._take_contact(matrix)
+        contact = self._take_contact(matrix)
         different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
-        for factor, part in ((1.0, unit), (-1.0, self._contact)):
+        for factor, part in ((1.0, unit), (-1.0, contact.matrix)):
             whole.axpy(factor, part, structure=different)
         unit.destroy()
         return whole
