@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -71,6 +72,25 @@ def _interface(shape: str = "plane") -> Interface:
         (lambda: Group([1.0, 2.0, 3.0, 4.0]), "offsets: an array of shape (4,)"),
         (lambda: Group([(0, 0, 0)], areas=[1.0, 2.0]), "areas: [1.0, 2.0] given"),
         (lambda: Group([(0, 0, 0)], areas=0.0), "areas: 0.0 given"),
+        (
+            lambda: PrescribedPath([(0, 1e60, 0), (1, 0, 0)], pressure=1.0),
+            "path: up to 1e+60 given, must be 0, or from 1e-50 to 1e+50 in size",
+        ),
+        (lambda: PrescribedPath([(0, 0, 0), (1e-60, 0, 0)], pressure=1.0), "path: up to 1e-60"),
+        (lambda: PrescribedPath(PATH, pressure=1e60), "pressure: up to 1e+60 given"),
+        (lambda: PrescribedPath(PATH, gap=[-1e60, 0.0]), "gap: up to 1e+60 given"),
+        (lambda: PrescribedPath(PATH, gap=0.0, times=[0, 1e60]), "times: up to 1e+60 given"),
+        (lambda: PrescribedPath(PATH, gap=0.0, times=[1e60, 1e60 + 1e46]), "times: up to 1e+60"),
+        (
+            lambda: PrescribedPath([*PATH, (2, 0, 0)], gap=0.0, times=[0, 1e-60, 1.0]),
+            "times: up to 1e-60 given, must be from 1e-50",
+        ),
+        (lambda: DraggingSpring(PATH, 1e60), "stiffness: up to 1e+60 given, must be from 1e-50"),
+        (lambda: DraggingSpring(PATH, 1.0, start=(1e60, 0, 0)), "start: up to 1e+60 given"),
+        (lambda: DeadLoad(PATH, (0, 0), viscosity=1e60, pressure=1.0), "viscosity: up to 1e+60"),
+        (lambda: Group([(0, 1e60)]), "offsets: up to 1e+60 given"),
+        (lambda: Group([(0, np.nan)]), "offsets: [(0, nan)] given, finite numbers are needed"),
+        (lambda: Group(areas=1e60), "areas: up to 1e+60 given, must be from 1e-50"),
         (lambda: Group(orientation="loose"), "orientation: 'loose' given"),
         (lambda: Group(orientation="free"), "orientation: a free orientation needs"),
     ],
@@ -88,6 +108,31 @@ def test_function_of_another_shape() -> None:
     wrong = PrescribedPath(lambda t: t, times=[0, 1], pressure=1.0)
     with pytest.raises(InputError, match="path: the function gives an array of shape"):
         drive(_interface(), wrong)
+
+
+def test_numbers_count_by_the_largest_of_their_history() -> None:
+    """A path may begin a rounding from zero, and what a function gives may come near it."""
+    PrescribedPath([(1e-60, 0, 0), (1, 0, 0)], pressure=[0.0, 1.0])
+    near = PrescribedPath(lambda t: (1e-60 * t, 0.0, 0.0), times=[0, 1], pressure=1.0)
+    assert near.path(1.0)[0] == 1e-60
+    far = PrescribedPath(lambda t: (1e60 * t, 0.0, 0.0), times=[0, 1], pressure=1.0)
+    with pytest.raises(InputError, match=r"path: the function gives \[1e\+60, 0.0, 0.0\] at"):
+        far.path(1.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_law_whose_tangent_is_not_finite_stops_the_drive() -> None:
+    """Stiffnesses that products of overflow: a line, and the steps before it, as of any stop."""
+    marks = make_directions("constant", vector=(1, 0, 0), angle=np.radians(30))
+    interface = Interface(
+        make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
+        NormalLaw(penalty=1e5),
+        Adhesion(stiffness=(2e5, 1e49), directions=marks),
+        Friction(coefficients=(0.3, 0.1), directions=marks),
+    )
+    path = PrescribedPath([(0, 0, 0), (4e-4, 0, 0)], pressure=10.0, increments=80)
+    with pytest.raises(StoppedError, match=r"in step 1, .*traction or its tangent is not finite"):
+        drive(interface, path)
 
 
 def test_load_that_does_not_fit_the_surface() -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.words import meant
@@ -286,6 +287,28 @@ def out_of_range(*numbers: float) -> bool:
     """
     size = max(map(abs, numbers), default=0.0)
     return size != 0.0 and not LEAST <= size <= MOST
+
+
+def check_size(field: str, numbers: npt.ArrayLike, *, zero: bool = True) -> None:
+    """Refuse an array of numbers that cannot be computed with.
+
+    Args:
+        field: Name for the message.
+        numbers: Finite numbers that count by the largest of them, of any shape.
+        zero: Whether all of them may be 0.
+
+    Raises:
+        InputError: `out_of_range`.
+
+    Example:
+        >>> check_size("path", [[0.0, 1e60], [1.0, 0.0]])
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: path: up to 1e+60 in size given, must be 0, or from \
+1e-50 to 1e+50 in size
+    """
+    size = float(np.abs(numbers).max(initial=0.0))
+    if out_of_range(size):
+        raise InputError(f"up to {size:g} given, must be {'0, or ' if zero else ''}{RANGE}", field)
 
 
 def _numbers(p: Parameter, given: object, field: str) -> list[float]:

@@ -166,6 +166,11 @@ class PointBalance:
             raise StepError(
                 f"point {shown(q[:3] + arms.vectors[i])}: {FAILURE[response.failure[i]]}"
             )
+        if not (np.isfinite(response.traction).all() and np.isfinite(response.tangent).all()):
+            raise StepError(
+                f"with the reference at {shown(q[:3])} the traction or its tangent is not finite; "
+                "stiffnesses may be too far apart"
+            )
         return self._assembled(q, here, arms, response, turn)
 
     def _assembled(

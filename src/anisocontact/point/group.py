@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import check_size
 from anisocontact.base.typed import typed
 from anisocontact.point.foot import Foot
 
@@ -30,7 +31,8 @@ class Group:
             the reference, "free" also turns about that normal, free of moment.
 
     Raises:
-        InputError: An array of another shape, an area that is not positive, an unknown word.
+        InputError: An array of another shape, an area that is not positive, a number that cannot
+            be computed with, an unknown word.
 
     Example:
         >>> Group([(0, 0, 0), (1, 0, 0)], areas=0.5).areas
@@ -50,10 +52,14 @@ class Group:
                 f"an array of shape {np.shape(offsets)} given, (n, 2) or (n, 3) needed",
                 field="offsets",
             )
+        if not np.isfinite(self.offsets).all():
+            raise InputError(f"{offsets!r} given, finite numbers are needed", field="offsets")
+        check_size("offsets", self.offsets)
         n = len(self.offsets)
         a = np.asarray(areas, dtype=np.float64)
         if a.shape not in ((), (n,)) or not (np.isfinite(a) & (a > 0.0)).all():
             raise InputError(f"{areas!r} given, one number or {n} > 0 needed", field="areas")
+        check_size("areas", a, zero=False)
         self.areas: Floats = np.full(n, a) if a.ndim == 0 else a
         if orientation not in ORIENTATIONS:
             raise InputError(

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import check_size
 from anisocontact.base.typed import typed
 from anisocontact.point.device import (
     FRAMES,
@@ -252,6 +253,7 @@ class DeadLoad(Load):
         self.force = Schedule(force, self.times, (_size(frame),), "force")
         if viscosity is not None and not (np.isfinite(viscosity) and viscosity > 0.0):
             raise InputError(f"{viscosity!r} given, must be > 0", field="viscosity")
+        check_size("viscosity", viscosity or 0.0)
         self.viscosity = viscosity
         self._start = _place(start)
 
@@ -351,6 +353,7 @@ def _place(given: npt.ArrayLike) -> Floats:
         raise InputError(
             f"{given!r} given, three numbers in space or two coordinates needed", field="start"
         )
+    check_size("start", a)
     return a
 
 
@@ -369,6 +372,7 @@ def _spring(given: npt.ArrayLike) -> Floats:
             "one number, three along the axes, or a symmetric 3 x 3 matrix needed",
             field="stiffness",
         )
+    check_size("stiffness", k, zero=False)
     if np.linalg.eigvalsh(k)[0] < 0.0 or not k.any():
         raise InputError(f"{given!r} given, must be >= 0 and not all 0", field="stiffness")
     return k

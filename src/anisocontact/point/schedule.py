@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.parameters import MOST, check_size
 
 #: A number or vector, knots of it, or a function of time.
 OverTime = npt.ArrayLike | Callable[[float], npt.ArrayLike]
@@ -27,8 +28,8 @@ class Schedule:
         least: Smallest number allowed.
 
     Raises:
-        InputError: The form fits neither a constant nor the knots, or a number is not finite or
-            too small.
+        InputError: The form fits neither a constant nor the knots, or a number is not finite, too
+            small, or beyond what can be computed with.
 
     Example:
         >>> float(Schedule([0.0, 4.0], np.array([0.0, 2.0]), (0,), "pressure")(0.5))
@@ -78,6 +79,7 @@ class Schedule:
             raise InputError("a number that is not finite given", field=self.field)
         if (a < self._least).any():
             raise InputError(f"{a.min():g} given, must be >= {self._least:g}", field=self.field)
+        check_size(self.field, a)
         return a
 
     def _needed(self) -> str:
@@ -95,6 +97,10 @@ class Schedule:
         if (a < self._least).any():
             text = f"the function gives {a.min():g} at time {t:g}, must be >= {self._least:g}"
             raise InputError(text, field=self.field)
+        # What a function gives may come near 0 without being it.
+        if np.abs(a).max() > MOST:
+            text = f"the function gives {a.tolist()} at time {t:g}, at most {MOST:g} needed"
+            raise InputError(text, field=self.field)
         return a
 
 
@@ -110,7 +116,8 @@ def knot_times(given: npt.ArrayLike | None, value: Any, field: str = "times") ->
         Times, (k,), at least two.
 
     Raises:
-        InputError: Not increasing, or missing where they cannot be counted.
+        InputError: Not increasing, missing where they cannot be counted, or beyond what can be
+            computed with.
     """
     if given is None:
         n = 0 if callable(value) or not np.ndim(value) else len(value)
@@ -122,6 +129,9 @@ def knot_times(given: npt.ArrayLike | None, value: Any, field: str = "times") ->
         raise InputError("a list of at least two times is needed", field=field)
     if not (np.diff(times) > 0.0).all():
         raise InputError(f"{times.tolist()} given, increasing times needed", field=field)
+    check_size(field, times)
+    for duration in np.diff(times):
+        check_size(field, duration, zero=False)
     return times
 
 
