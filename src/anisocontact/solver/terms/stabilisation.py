@@ -83,8 +83,9 @@ class Stabilisation(Term):
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
-        farthest = self._comm.allgather(float(np.abs(model.positions).max(initial=0.0)))
-        self._extent = 2.0 * max(farthest)
+        lowest = self._comm.allgather(model.positions.min(axis=0, initial=np.inf))
+        highest = self._comm.allgather(model.positions.max(axis=0, initial=-np.inf))
+        self._extent = float(np.linalg.norm(np.max(highest, axis=0) - np.min(lowest, axis=0)))
         self._attached = attached
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
