@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import resource
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from shutil import which
 from typing import Any
 
 import numpy as np
@@ -27,6 +30,7 @@ from anisocontact.solver.strategies.condensed.work import work
 from anisocontact.solver.strategies.costs import factorisation_cost, operation_cost
 from anisocontact.solver.strategies.strategy import Task
 
+ROOT = Path(__file__).parents[2]
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 
 
@@ -258,3 +262,41 @@ def test_bodies_at_finite_strain_are_factorised_up_to_more(
     contact = Contact(mesh, "block.bottom", MovingSurface(fe.interface(), None))
     problem = Problem(mesh, {"block": make_material(model, E=1000.0, nu=nu)}, [contact])
     assert any(krylov.krylov_pays(Task(problem, [PRESS], "none_", {}))) == pays
+
+
+ON_SEVERAL = """
+from anisocontact.base.fenicsx import MPI
+from anisocontact.solver.strategies import krylov
+from anisocontact.solver.strategies.choice import choose
+from anisocontact.solver.strategies.condensed import strategy
+from anisocontact.solver.strategies.strategy import Task
+from tests.verification.test_fe_iterative import PRESS, _pair
+for n, model, *limits in (
+    (10, "linear-elastic", 5000, 0, 0),
+    (10, "linear-elastic", 0, 0, 9000),
+    (10, "linear-elastic", 0, 9000, 0),
+    (8, "neo-hookean", 5000, 9000, 0),
+    (8, "neo-hookean", 5000, 0, 9000),
+):
+    strategy.MOST_ON_SEVERAL, krylov.ON_SEVERAL_LINEAR, krylov.ON_SEVERAL = limits
+    problem = _pair(n=n, material={"model": model, "E": 1000.0, "nu": 0.3})
+    found = choose("auto", Task(problem, [PRESS], "several_", {}))
+    if MPI.COMM_WORLD.rank == 0:
+        print(found.name)
+"""
+
+
+@pytest.mark.mpi
+def test_several_processes_iterate_where_one_would_keep_the_others_waiting() -> None:
+    """Limits of contact unknowns and of unknowns, of linear bodies and of others.
+
+    Source: measured, see the limits. 5,000 unknowns, and 3,000, too few to condense bodies that
+    change.
+    """
+    start = which("mpirun")
+    if start is None:
+        pytest.skip("no mpirun")
+    command = ["timeout", "-k", "5", "60", start, "-n", "2", sys.executable, "-c", ON_SEVERAL]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["condensed", "iterative", "direct", "iterative", "direct"]

@@ -28,6 +28,7 @@ from anisocontact.solver.strategies.costs import (
     factor_bytes,
     too_large,
 )
+from anisocontact.solver.strategies.iterative.defaults import MIXED
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -40,6 +41,10 @@ MOST_CONTACT = 8000
 #: linear milled block 0.6 times at 4.8. Linear sheets take 1.1 to 2 times from 5.3 on, strips and
 #: sheets at finite strain 1.2 to 1.4 times from 4.2 on.
 WIDE_LINEAR, WIDE, POWER = 5.0, 4.1, 2.0 / 3.0
+#: Contact unknowns of linear bodies on several processes beyond which the first process, which has
+#: their dense matrix, keeps the others waiting. Two processes, block on block, over `iterative`:
+#: 1.0 at 870 contact unknowns, 0.8 to 1.1 at 1,200 to 1,500, 1.2 at 1,850, 1.4 and 1.7 at 3,000.
+MOST_ON_SEVERAL = 2000
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
 #: Displacements of a node in space; bytes of an entry of a dense matrix in single precision.
@@ -149,6 +154,11 @@ def _costs_on_several(task: Task) -> Iterator[str]:
     count = 3 * int(problem.comm.allreduce(np.count_nonzero(touched[:own])))
     if count > MOST_CONTACT:
         yield f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not pay"
+    if problem.linear and count > MOST_ON_SEVERAL and problem.bulk.hardness < MIXED:
+        yield (
+            f"{count} contact unknowns of linear bodies on several processes: Krylov iterations "
+            "are faster"
+        )
     if count > WIDE * problem.unknowns**POWER:
         yield (
             f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
