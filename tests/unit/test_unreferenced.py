@@ -9,14 +9,14 @@ import weakref
 
 import pytest
 
-from anisocontact.base.fenicsx import MPI
+from anisocontact.base.fenicsx import MPI, fem, ufl
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import ContactProblem, Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
 LAW = ContactLaw(
@@ -52,6 +52,21 @@ def solved(strategy, **options):
     return one
 
 
+def script(solve=True):
+    """A residual form of a script above a rigid plane."""
+    model = box()
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, "block.bottom", MovingSurface(plane, RigidBody("die", (0, 0, 0))), LAW)
+    u, v = fem.Function(model.space), ufl.TestFunction(model.space)
+    down = fem.Constant(model.mesh, (0.01, 0.0, -0.01))
+    top = fem.dirichletbc(down, model.nodes("block.top"), model.space)
+    form = ufl.inner(ufl.sym(ufl.grad(u)), ufl.grad(v)) * ufl.dx
+    one = ContactProblem(form, u, bcs=[top], contacts=[contact])
+    if solve:
+        one.solve()
+    return one
+
+
 def left():
     """How many communicators MPI has yet."""
     made = []
@@ -74,6 +89,8 @@ MADE = {
     "direct": lambda: solved("direct", facets=True),
     "condensed": lambda: solved("condensed"),
     "iterative": lambda: solved("iterative"),
+    "script": lambda: script(solve=False),
+    "solved script": script,
 }
 
 

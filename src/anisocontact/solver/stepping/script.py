@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, override
+from typing import Any
 
 import numpy as np
 
@@ -21,30 +21,21 @@ from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.contact.multiplier_schemes import IN_CYCLES, SOFTER
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
-from anisocontact.solver.stepping.script_parts import (
-    moved_bodies,
-    script_assembly,
-    script_unknowns,
-)
+from anisocontact.solver.stepping.script_parts import moved_bodies, script_unknowns
 from anisocontact.solver.stepping.script_state import ScriptState
-from anisocontact.solver.stepping.unsupported_parts import UnsupportedParts
+from anisocontact.solver.stepping.script_system import ScriptSystem
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
-from anisocontact.solver.system.assembled import AssembledSystem
-from anisocontact.solver.system.assembly import TrialState
-from anisocontact.solver.system.fields import fields_beside
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.parts import suit
-from anisocontact.solver.system.sides_kept import SidesKept
-from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.terms.bodies import Bodies
-from anisocontact.solver.terms.form import Dirichlet, FormBulk
+from anisocontact.solver.terms.form import FormBulk
 
 LIMITS = Limits()
 
 
 @typed
-class ContactProblem(AssembledSystem):
+class ContactProblem:
     """Residual form of the user plus contact, solved by PETSc SNES.
 
     What `dolfinx.fem.petsc.NonlinearProblem` is without contact: the residual is
@@ -64,8 +55,8 @@ class ContactProblem(AssembledSystem):
         petsc_options: PETSc options without prefix.
 
     Attributes:
+        system: What is solved.
         newton: The solver; its `snes` is to be asked or set as usual.
-        balance: Forces of the last evaluation.
 
     Raises:
         InputError: A contact or a condition lives on another space than `u`, a contact is given
@@ -102,28 +93,21 @@ class ContactProblem(AssembledSystem):
         petsc_options_prefix: str = "anisocontact_",
         petsc_options: Mapping[str, OptionValue] | None = None,
     ) -> None:
-        space = u.function_space
-        unknowns = script_unknowns(contacts, space)
+        unknowns = script_unknowns(contacts, u.function_space)
         self._bodies, self._key = moved_bodies(contacts), object()
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
         bodies = Bodies(form, unknowns)
-        self._unknowns, self._fields = unknowns, fields_beside(unknowns, space)
         suit(contacts, bodies, [form.finite] * len(contacts))
         warn_of(contacts)
         warn_of_overlaps(contacts)
-        self._assembly = script_assembly(bodies, contacts, Dirichlet(self.bcs, space), self._fields)
-        self.contact_term = self._assembly.contacts
-        self._balance = ForceBalance.none(self._assembly.layout.owned)
-        self._fields.measure(bodies)
-        self._tangent = Tangent(self._assembly)
-        self._unsupported = UnsupportedParts(unknowns, contacts, self._assembly)
-        self._sides = SidesKept(contacts, self._unsupported.bodies())
-        options = {**self._fields.options, **(petsc_options or {})}
-        self._state = ScriptState(u, unknowns, contacts, self._bodies, self._assembly.terms)
+        self.system = ScriptSystem(u, unknowns, bodies, self.bcs, self.contacts)
+        options = {**self.system.fields.options, **(petsc_options or {})}
+        terms = self.system.assembly.terms
+        self._state = ScriptState(u, unknowns, contacts, self._bodies, terms)
         self._options = Database(petsc_options_prefix, petsc_options or {}, "petsc_options")
         with self._options.blamed(), self._options:
-            self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
+            self.newton = Newton(self.system, petsc_options_prefix, options, lambda *_: None)
 
     @typed
     def solve(self, dt: float = 1.0) -> int:
@@ -147,7 +131,7 @@ class ContactProblem(AssembledSystem):
             raise InputError(f"{dt!r} given, must be > 0", "dt")
         with one_thread():
             iterations = self._solve(dt)
-        for said in (*self._options.unread(self.comm), *self._sides.fresh()):
+        for said in (*self._options.unread(self.comm), *self.system.sides.fresh()):
             warnings.warn(str(said), ModelWarning, stacklevel=3)
         return iterations
 
@@ -157,27 +141,25 @@ class ContactProblem(AssembledSystem):
             contact.check_at_rest()
         for body in self._bodies:
             body.check_history(self._key, "rigid body")
-        self._check_finite()
-        terms = self._assembly.terms
+        system, terms = self.system, self.system.assembly.terms
+        system.check_finite()
         terms.set_load_factor(1.0, dt)
         before = self.u.x.array.copy()
-        x = self.new_vector()
+        x = system.new_vector()
         x.array[:] = before[: x.getLocalSize()]
-        self._check_supported(x)
-        self._fields.measure(self._assembly.bodies)
-        self._fields.weigh_by(lambda: self._start(x))
+        system.begin(x)
         with self._options.blamed(), self._options:
             result = self._equilibrium(x)
         reason = result.reason
         if not reason:
-            self.evaluate(x)
-            found = self._sides.objection(self.nodal)
+            system.evaluate(x)
+            found = system.sides.objection(system.nodal)
             reason = f"contact {found.contact!r}: {found.why}" if found else ""
         if reason:
             self.u.x.array[:] = before
             terms.roll_back()
             raise RuntimeError(reason)
-        terms.accept(self.nodal)
+        terms.accept(system.nodal)
         for body in self._bodies:
             body.commit()
             body.history_of = self._key
@@ -185,7 +167,7 @@ class ContactProblem(AssembledSystem):
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method, with multipliers found in other ways where the usual one fails."""
-        start, contacts = x.copy(), self.contact_term
+        start, contacts = x.copy(), self.system.contact_term
         result = self.newton.solve(x)
         for way in (SOFTER, IN_CYCLES):
             if not result.reason or way not in contacts.ways:
@@ -292,74 +274,28 @@ class ContactProblem(AssembledSystem):
         """Communicator of the mesh."""
         return self.u.function_space.mesh.comm
 
+    @property
+    def balance(self) -> ForceBalance:
+        """Forces of the last evaluation."""
+        return self.system.balance
+
+    @property
+    def nodal(self) -> Floats:
+        """Displacement of the local nodes in the last evaluation, (nodes, 3), length."""
+        return self.system.nodal
+
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
-        return self._assembly.layout.new_vector()
+        return self.system.new_vector()
 
     def new_tangent(self) -> Mat:
         """Matrix for `tangent`."""
-        return self._tangent.new_matrix()
+        return self.system.new_tangent()
 
     def evaluate(self, x: Vec) -> Floats:
-        """Residual of the unknowns this rank owns.
-
-        Args:
-            x: Displacements, length.
-
-        Returns:
-            Residual, force; NaN everywhere where a law has no answer.
-        """
-        self.u.x.array[: x.getLocalSize()] = x.array_r
-        self.u.x.scatter_forward()
-        self._balance = self._assembly.balance(TrialState(x, self.nodal, np.zeros(0)))
-        return self.balance.residual
+        """Residual of the unknowns this rank owns, see `ScriptSystem.evaluate`."""
+        return self.system.evaluate(x)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
-        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
-
-        Args:
-            x: Displacements.
-            out: The matrix.
-
-        Returns:
-            Whether entries were added to its pattern.
-        """
-        self.evaluate_at(x)
-        return self._tangent.write(out)
-
-    @property
-    @override
-    def nodal(self) -> Floats:
-        return self._unknowns.nodal(self.u.x.array)
-
-    @override
-    def evaluate_at(self, x: Vec) -> None:
-        if not np.array_equal(self.u.x.array[: x.getLocalSize()], x.array_r):
-            self.evaluate(x)
-
-    def _start(self, x: Vec) -> ForceBalance:
-        """Balance of the state from which a solution starts, of which nothing stays."""
-        self.evaluate(x)
-        self._assembly.terms.roll_back()
-        return self.balance
-
-    def _check_finite(self) -> None:
-        """Refuse a start, or a condition, with values that are no numbers; collective."""
-        x, space = self.new_vector(), self.u.function_space
-        given = {"u": self.u.x.array}
-        for i, bc in enumerate(self.bcs):
-            given[f"bcs[{i}]"] = Dirichlet([bc], space).violation(x)
-        x.destroy()
-        for name, values in given.items():
-            count = self.comm.allreduce(int((~np.isfinite(values)).sum()))
-            if count:
-                raise InputError(f"{count} values that are not finite given", name)
-
-    def _check_supported(self, x: Vec) -> None:
-        """Refuse a part of the mesh that can move as a rigid body."""
-        if not self._unsupported.untouched():
-            return
-        self.evaluate(x)  # rigid bodies may have been moved since
-        free = self._unsupported.untouched()
-        self._assembly.terms.roll_back()
-        self._unsupported.check(free, "contacts" if self.contacts else "bcs")
+        """Write d residual / d x into a matrix of `new_tangent`, see `ScriptSystem.tangent`."""
+        return self.system.tangent(x, out)

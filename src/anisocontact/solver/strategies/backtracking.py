@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.strategies.system import System
 from anisocontact.solver.terms.contacts import Contacts, Marks
 
 #: Residuals of which a correction must not exceed the largest: while points find their status it
@@ -34,13 +34,13 @@ class Backtracking:
     widens the reach, in place of halves that would creep towards its end.
 
     Args:
-        system: What is solved, a `newton.System`.
+        system: What is solved.
 
     Attributes:
         whole: Whether any balance will do, as where bodies want their corrections in full.
     """
 
-    def __init__(self, system: Any) -> None:
+    def __init__(self, system: System) -> None:
         self._system, self.whole = system, False
         self._known: deque[float] = deque(maxlen=MEMORY)
         self._tried: tuple[Marks, Floats, Floats] | None = None
@@ -48,8 +48,7 @@ class Backtracking:
 
     @property
     def _contacts(self) -> Contacts:
-        found: Contacts = self._system.contact_term
-        return found
+        return self._system.contact_term
 
     def begin(self) -> None:
         """Take it that another iteration begins."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.solver.strategies.newton import System
+from anisocontact.solver.strategies.system import System
 
 #: Residual of a correction over its right-hand side that is asked for at most.
 _FINEST = 1e-13

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
-from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.strategies.database import Database, OptionValue
-from anisocontact.solver.strategies.residual_history import PATIENCE, ResidualHistory
-from anisocontact.solver.strategies.symmetric import check_symmetric
+from anisocontact.solver.strategies.newton_iteration import NewtonIteration
+from anisocontact.solver.strategies.system import System
 from anisocontact.solver.system.culprit import Culprit, LostError
-from anisocontact.solver.system.force_balance import ForceBalance
-from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
@@ -44,67 +39,6 @@ _UNFIT = {
 TOLERANCE = 1e-8
 #: Corrections at most, unless options say how many.
 MOST_ITERATIONS = 100
-
-
-class System(Protocol):
-    """What Newton asks of a system of equations; see `Problem`."""
-
-    @property
-    def balance(self) -> ForceBalance:
-        """Forces of the last evaluation."""
-        ...
-
-    @property
-    def contact_term(self) -> Contacts:
-        """Its contacts, whose multipliers may follow every correction."""
-        ...
-
-    @property
-    def outgrown(self) -> bool:
-        """Whether the last evaluation left what the system keeps in reach."""
-        ...
-
-    @property
-    def comm(self) -> Any:
-        """Communicator of the unknowns."""
-        ...
-
-    def new_vector(self) -> Vec:
-        """Vector of the unknowns."""
-        ...
-
-    def new_tangent(self) -> Mat:
-        """Matrix for `tangent`."""
-        ...
-
-    def evaluate(self, x: Vec) -> Floats:
-        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
-        ...
-
-    def tangent(self, x: Vec, out: Mat) -> bool:
-        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
-
-        Raises:
-            SingularError: It has no inverse.
-        """
-        ...
-
-    def corrected(self) -> AbstractContextManager[bool]:
-        """Around Newton's method: whether corrections are to be taken in full."""
-        ...
-
-    def improve(self, x: Vec) -> bool:
-        """Take what the equilibrium `x` says of multipliers; whether it has to be found again.
-
-        Raises:
-            NotHeldError: They do not converge.
-            LostError: A body has got where it cannot be.
-        """
-        ...
-
-    def soften(self) -> bool:
-        """After a solution that failed: take penalties that are easier; whether to try again."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -167,13 +101,11 @@ class Newton:
         on_iteration: Callable[[int, float], None],
     ) -> None:
         self._problem = problem
-        self._on_iteration = on_iteration
-        self._damping: Callable[[], float] | None = None
-        self._search = Backtracking(problem)
+        self._iteration = NewtonIteration(problem, on_iteration)
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
-        self.snes.setFunction(self._function, problem.new_vector())
-        self.snes.setJacobian(self._jacobian, problem.new_tangent())
+        self.snes.setFunction(self._iteration.function, problem.new_vector())
+        self.snes.setJacobian(self._iteration.jacobian, problem.new_tangent())
         self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MOST_ITERATIONS)
         # Some options, such as those of MUMPS, are read when they are first needed, in `solve`.
         self._database = Database(prefix, DEFAULTS | dict(options))
@@ -185,18 +117,18 @@ class Newton:
         if why := _UNFIT.get(self.snes.getType()):
             text = f"{self.snes.getType()!r} given, which {why}"
             raise InputError(text, field="options.snes_type")
-        self.snes.setConvergenceTest(self._converged)
-        self.snes.setLineSearchPreCheck(self._damp)
+        self.snes.setConvergenceTest(self._iteration.converged)
+        self.snes.setLineSearchPreCheck(self._iteration.damp)
         self._line_search = self.snes.getLineSearch().getType()
-        self._patience = self.snes.getTolerances()[3] if given else PATIENCE
-        self._history = ResidualHistory(problem.contact_term, self._patience)
+        if given:
+            self._iteration.patience = self.snes.getTolerances()[3]
 
     def persistent(self) -> Arrays:
         """Nothing is kept from one solution to the next."""
         return {}
 
     def close(self) -> None:
-        """Give back PETSc's objects, which hold this one and would keep it for ever."""
+        """Give back PETSc's objects at once, also those of several processes."""
         self.snes.destroy()
 
     @property
@@ -218,15 +150,9 @@ class Newton:
         Returns:
             What came of it.
         """
-        self._damping = damping
         with self._problem.corrected() as full:
-            self._search.whole = full
+            self._iteration.damp_by(damping, full)
             return self._solve(x, full or full_steps)
-
-    @property
-    def _residuals(self) -> list[float]:
-        """Residual over the forces at work, of the start and after each correction."""
-        return self._history.residuals
 
     def _solve(self, x: Vec, full_steps: bool) -> NewtonResult:
         """Equilibria, with better multipliers or softer penalties, until there is the last one."""
@@ -264,8 +190,7 @@ class Newton:
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
-        self._history = ResidualHistory(self._problem.contact_term, self._patience)
-        self._search.begin()
+        self._iteration.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()
         try:
@@ -273,7 +198,7 @@ class Newton:
                 self.snes.solve(None, iterate)
         except PETSc.Error as error:
             if isinstance(error.__cause__, SingularError):
-                known = self._residuals
+                known = self._iteration.residuals
                 return NewtonResult(len(known) - 1, known, str(error.__cause__))
             # What a callback raises (an interrupt too) comes wrapped by PETSc.
             raise error.__cause__ or error from None
@@ -286,59 +211,12 @@ class Newton:
             check_memory(ksp.getPC())
             ksp.reset()
             ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
-        return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)
-
-    def _function(self, _: SNES, x: Vec, f: Vec) -> None:
-        # An iterate far off overflows; it is judged by its residual, which is then no number.
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            known = self._search.evaluated(x)
-            f.array[:] = self._problem.evaluate(x) if known is None else known
-
-    def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            grown = self._problem.tangent(x, matrix)
-        if grown:
-            self._outgrow()
-        check_symmetric(self.snes.getKSP(), matrix)
-
-    def _outgrow(self) -> None:
-        """The pattern of the tangent has grown."""
-        # on several processes PETSc would go on with the symbolic factorisation of the old pattern
-        if self._problem.comm.size > 1:
-            self.snes.getKSP().reset()
-
-    def _damp(self, x: Vec, direction: Vec) -> bool:
-        share = 1.0 if self._damping is None else self._damping()
-        if self._problem.contact_term.simultaneous:
-            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                share = self._search.share(x, direction, share)
-        if share != 1.0:
-            direction.scale(share)
-        return share != 1.0
-
-    def _converged(
-        self, snes: SNES, iteration: int, norms: tuple[float, float, float]
-    ) -> PETSc.SNES.ConvergedReason:
-        reasons = PETSc.SNES.ConvergedReason
-        balance, contacts = self._problem.balance, self._problem.contact_term
-        norm = balance.norm if contacts.simultaneous or balance.fields else norms[2]
-        rtol, atol, _, _ = snes.getTolerances()
-        fields = balance.of_fields(norm)
-        relative = max(field.relative(rtol) for field in fields)
-        self._residuals.append(relative)
-        self._on_iteration(iteration, relative)
-        if not np.isfinite(norm):
-            return reasons.DIVERGED_FUNCTION_NANORINF
-        small = balance.reached and all(field.small(rtol, atol) for field in fields)
-        if small and contacts.consistent():
-            return reasons.CONVERGED_FNORM_RELATIVE
-        searching = snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
-        diverged = self._history.divergence(searching, self._damping is not None)
-        return reasons.ITERATING if diverged is None else diverged
+        return NewtonResult(self.snes.getIterationNumber(), self._iteration.residuals, text)
 
     def _explain(self, reason: int) -> str:
         reasons = PETSc.SNES.ConvergedReason
-        last = self._residuals[-1] if self._residuals else np.nan
+        residuals = self._iteration.residuals
+        last = residuals[-1] if residuals else np.nan
         known = {
             reasons.DIVERGED_MAX_IT: "no convergence in {n} Newton iterations, residual {r:.1e}",
             reasons.DIVERGED_FUNCTION_NANORINF: "the residual is not a number",

@@ -57,6 +57,7 @@ class LaggedNewton(Newton):
         pc = self.snes.getKSP().getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(self)
+        self.snes.setJacobian(self._jacobian)
 
     @override
     def solve(
@@ -94,12 +95,10 @@ class LaggedNewton(Newton):
             found = np.zeros(len(right))
         x.array[:] = found
 
-    @override
-    def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, again: Mat) -> None:
+    def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, _: Mat) -> None:
         self._system.evaluate_at(x)
-        with self._stiffness.chosen(lasting=not self._search.whole):
-            super()._jacobian(snes, x, matrix, again)
-
-    @override
-    def _outgrow(self) -> None:
-        self._factor.outgrow()
+        iteration = self._iteration
+        with self._stiffness.chosen(lasting=not iteration.search.whole):
+            grown = iteration.tangent(snes, x, matrix)
+        if grown:
+            self._factor.outgrow()

@@ -62,6 +62,7 @@ class IterativeNewton(Newton):
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
         self._asked = any(name.startswith("ksp_") for name in given)
+        self.snes.setJacobian(self._jacobian)
         ksp = self.snes.getKSP()
         ksp.setPostSolve(self._count)
         self._levels: Levels | None = None
@@ -152,8 +153,8 @@ class IterativeNewton(Newton):
         return bool(reason == PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
 
     def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, other: Mat) -> None:
-        super()._jacobian(snes, x, matrix, other)
-        if self._levels is not None and self._residuals[-1] > FAR:
+        self._iteration.jacobian(snes, x, matrix, other)
+        if self._levels is not None and self._iteration.residuals[-1] > FAR:
             self._levels.begin(lags=self._lags)
         if self._adapts:
             size = snes.getFunction()[0].norm()

@@ -1,0 +1,115 @@
+"""What SNES asks for in every iteration of Newton's method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.strategies.backtracking import Backtracking
+from anisocontact.solver.strategies.residual_history import PATIENCE, ResidualHistory
+from anisocontact.solver.strategies.symmetric import check_symmetric
+from anisocontact.solver.strategies.system import System
+
+
+class NewtonIteration:
+    """Residual, tangent, share of a correction and convergence, as callbacks of SNES.
+
+    SNES refers to this object, which refers to no SNES: what a solver lets go of is gone at once.
+
+    Args:
+        system: The system of equations.
+        on_iteration: Called with the number of the iteration and the residual.
+
+    Attributes:
+        search: The line search where multipliers follow.
+        patience: Corrections after which only a residual that falls is waited for.
+    """
+
+    def __init__(self, system: System, on_iteration: Callable[[int, float], None]) -> None:
+        self._system, self._on_iteration = system, on_iteration
+        self._damping: Callable[[], float] | None = None
+        self.search = Backtracking(system)
+        self.patience: float = PATIENCE
+        self._history = ResidualHistory(system.contact_term, self.patience)
+
+    @property
+    def residuals(self) -> list[float]:
+        """Residual over the forces at work, of the start and after each correction."""
+        return self._history.residuals
+
+    def damp_by(self, damping: Callable[[], float] | None, full: bool) -> None:
+        """Take it that a solution begins.
+
+        Args:
+            damping: Asked before every correction what share of it is to be taken, 0 to 1.
+            full: Whether corrections are to be taken in full.
+        """
+        self._damping, self.search.whole = damping, full
+
+    def begin(self) -> None:
+        """Take it that iterations begin, with the multipliers as they are."""
+        self._history = ResidualHistory(self._system.contact_term, self.patience)
+        self.search.begin()
+
+    def function(self, _: SNES, x: Vec, f: Vec) -> None:
+        """Write the residual at `x` into `f`, for PETSc."""
+        # An iterate far off overflows; it is judged by its residual, which is then no number.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            known = self.search.evaluated(x)
+            f.array[:] = self._system.evaluate(x) if known is None else known
+
+    def jacobian(self, snes: SNES, x: Vec, matrix: Mat, _: Mat) -> None:
+        """Write the tangent at `x`, for PETSc."""
+        # on several processes PETSc would go on with the symbolic factorisation of the old pattern
+        if self.tangent(snes, x, matrix) and self._system.comm.size > 1:
+            snes.getKSP().reset()
+
+    def tangent(self, snes: SNES, x: Vec, matrix: Mat) -> bool:
+        """Write the tangent at `x`; whether its pattern has grown.
+
+        Raises:
+            InputError: It is not symmetric, and the factorisation of the options needs that.
+        """
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            grown = self._system.tangent(x, matrix)
+        check_symmetric(snes.getKSP(), matrix)
+        return grown
+
+    def damp(self, x: Vec, direction: Vec) -> bool:
+        """Shorten a correction, for PETSc; whether it was."""
+        share = 1.0 if self._damping is None else self._damping()
+        if self._system.contact_term.simultaneous:
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                share = self.search.share(x, direction, share)
+        if share != 1.0:
+            direction.scale(share)
+        return share != 1.0
+
+    def converged(
+        self, snes: SNES, iteration: int, norms: tuple[float, float, float]
+    ) -> PETSc.SNES.ConvergedReason:
+        """Why to end, or to go on, for PETSc.
+
+        Args:
+            snes: Has the tolerances.
+            iteration: Number of corrections.
+            norms: Of the iterate, of the last correction and of the residual.
+        """
+        reasons = PETSc.SNES.ConvergedReason
+        balance, contacts = self._system.balance, self._system.contact_term
+        norm = balance.norm if contacts.simultaneous or balance.fields else norms[2]
+        rtol, atol, _, _ = snes.getTolerances()
+        fields = balance.of_fields(norm)
+        relative = max(field.relative(rtol) for field in fields)
+        self.residuals.append(relative)
+        self._on_iteration(iteration, relative)
+        if not np.isfinite(norm):
+            return reasons.DIVERGED_FUNCTION_NANORINF
+        small = balance.reached and all(field.small(rtol, atol) for field in fields)
+        if small and contacts.consistent():
+            return reasons.CONVERGED_FNORM_RELATIVE
+        searching = snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
+        diverged = self._history.divergence(searching, self._damping is not None)
+        return reasons.ITERATING if diverged is None else diverged
