@@ -28,7 +28,7 @@ print(idle)
 
 @pytest.fixture(autouse=True)
 def restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blas_threads._GIVEN, "threads", 0)
+    monkeypatch.setattr(blas_threads._SHARED, "threads", 0)
     for name in ("PMI_RANK", "PMI_FD", "PMIX_RANK", "OMPI_COMM_WORLD_RANK"):
         monkeypatch.delenv(name, raising=False)
 
@@ -80,7 +80,7 @@ def test_shared_work_has_two_threads_and_other_work_as_before(
     assert max(three) == 3
     with blas_threads.shared(blas_threads.LARGE):
         assert numbers() == three
-    monkeypatch.setattr(blas_threads._GIVEN, "threads", 2)
+    monkeypatch.setattr(blas_threads._SHARED, "threads", 2)
     with blas_threads.shared(blas_threads.LARGE - 1):
         assert numbers() == three
     with pytest.raises(ZeroDivisionError), blas_threads.shared(blas_threads.LARGE):

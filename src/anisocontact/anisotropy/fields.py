@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base import registry
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Flags, Floats, Pair
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
-
-Pair = Sequence[float]
 
 Directions = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.anisotropy.fields import DirectionField, require_regular
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Pair
 from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Surface, points
-
-Pair = Sequence[float]
 
 #: Placements of the components of a tensor: A_ij, A^ij, A^i_j, and the spatial 3 x 3 tensor.
 PLACEMENTS = ("co", "contra", "mixed", "spatial")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,9 @@ Codes = npt.NDArray[np.int8]
 
 #: Which of some things.
 Flags = npt.NDArray[np.bool_]
+
+#: Two numbers, such as those along two axes, as a script gives them.
+Pair = Sequence[float]
 
 #: Sparse matrices, by rows.
 type Sparse = scipy.sparse.csr_array

@@ -22,18 +22,18 @@ LARGE = 1500
 
 
 @dataclass
-class _Given:
+class _SharedThreads:
     """Threads that `shared` gives; none in a process whose threads are somebody else's."""
 
     threads: int = 0
 
 
-_GIVEN = _Given()
+_SHARED = _SharedThreads()
 
 
 def set_blas_threads() -> None:
     """Choose the threads of OpenBLAS for the command, once: what is set then is not the user's."""
-    _GIVEN.threads = _GIVEN.threads or choice(os.environ)
+    _SHARED.threads = _SHARED.threads or choice(os.environ)
 
 
 def choice(environment: MutableMapping[str, str]) -> int:
@@ -71,8 +71,8 @@ def shared(size: int) -> Iterator[None]:
     Args:
         size: Rows of a square matrix that is factorised or multiplied with as large ones.
     """
-    if _GIVEN.threads > 1 and size >= LARGE:
-        with _openblas().limit(limits=_GIVEN.threads):
+    if _SHARED.threads > 1 and size >= LARGE:
+        with _openblas().limit(limits=_SHARED.threads):
             yield
     else:
         yield

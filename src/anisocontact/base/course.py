@@ -85,14 +85,14 @@ class Held:
 
 
 @dataclass(frozen=True)
-class Ramp:
+class LinearHistory:
     """The value goes linearly to a number.
 
     Attributes:
         value: The number, of the unit of the prescribed value.
 
     Example:
-        >>> Ramp(3.0).at(0.5, 4.0, 1.0)
+        >>> LinearHistory(3.0).at(0.5, 4.0, 1.0)
         2.0
     """
 
@@ -231,7 +231,7 @@ class Course:
 PrescribedValue = float | Course
 
 
-def history_of(given: PrescribedValue) -> Ramp | Course:
+def history_of(given: PrescribedValue) -> LinearHistory | Course:
     """How a value goes along the step that prescribes it.
 
     Args:
@@ -244,7 +244,7 @@ def history_of(given: PrescribedValue) -> Ramp | Course:
         >>> history_of(2.0).end(0.0, 1.0), history_of(Course(lambda t: t)).end(0.0, 4.0)
         (2.0, 4.0)
     """
-    return given if isinstance(given, Course) else Ramp(given)
+    return given if isinstance(given, Course) else LinearHistory(given)
 
 
 def check_prescribed(given: Any) -> None:

@@ -50,7 +50,7 @@ class _Prescribed:
     amplitude: str
 
 
-class Couplings:
+class ReferencePoints:
     """The reference points of a deck.
 
     Args:

@@ -16,7 +16,7 @@ from anisocontact.mesh.deck import Card
 SAME = 1e-3
 
 
-class Sectors:
+class DeckSectors:
     """What a deck says of cyclic symmetry.
 
     Args:

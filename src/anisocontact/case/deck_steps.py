@@ -17,7 +17,7 @@ from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
 from anisocontact.mesh.deck_supports import (
-    Support,
+    DeckSupport,
     Unread,
     check_options,
     supports_of,
@@ -143,7 +143,7 @@ class Steps:
                 table["duration"] = step.duration
             yield table | step.keys
 
-    def _support(self, one: Support) -> Iterator[str]:
+    def _support(self, one: DeckSupport) -> Iterator[str]:
         keys = self._steps[max(one.step - 1, 0)].keys.setdefault(one.kind, {})
         groups = one.groups or self._node(int(one.entry))
         if not groups:

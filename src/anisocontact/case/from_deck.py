@@ -10,8 +10,8 @@ from typing import Any
 
 from anisocontact.base.errors import InputError
 from anisocontact.case.deck_contact import DeckContacts, table_lines
-from anisocontact.case.deck_coupling import Couplings, of_ideal
-from anisocontact.case.deck_cyclic import Sectors
+from anisocontact.case.deck_coupling import ReferencePoints, of_ideal
+from anisocontact.case.deck_cyclic import DeckSectors
 from anisocontact.case.deck_materials import Materials, Temperatures
 from anisocontact.case.deck_procedures import static_steps
 from anisocontact.case.deck_steps import Steps
@@ -92,17 +92,17 @@ class _Case:
         self._title = ""
         self._warm: list[Card] = []
         self._named = named_in([*self.mesh.facets, *self.mesh.nodes])
-        self._sectors = Sectors(self.mesh, self._named)
+        self._sectors = DeckSectors(self.mesh, self._named)
         self._steps = Steps(self.deck, self.mesh, self._named, self._temperatures)
         kinds = {kind for kind, _ in self.deck.elements.values()}
         turned = bool(kinds) and {kind[:3] for kind in kinds} <= {"CAX"}
         self._tools = Tools(self.deck.profiles, self.mesh.points, turned)
         self._contacts = DeckContacts(self.mesh, self._named, self._tools, self._leave)
-        self._couplings = Couplings(
+        self._reference_points = ReferencePoints(
             self.deck, self.mesh, self._named, self._tools, of_ideal(kinds), self._leave
         )
-        self._each(lambda step, card: bool(step) or not self._couplings.take(card))
-        self.deck.cards = self._couplings.without(self.deck.cards)
+        self._each(lambda step, card: bool(step) or not self._reference_points.take(card))
+        self.deck.cards = self._reference_points.without(self.deck.cards)
         self._each(self._take)
         self.left_out += self._steps.finish()
 
@@ -124,7 +124,7 @@ class _Case:
             yield from table_lines(f"[amplitude.{key_of(name)}]", amplitude)
         for place, node in self._steps.nodes.items():
             yield from table_lines(f"[nodes.{key_of(place)}]", {"near": node})
-        yield from self._contacts.lines(self._couplings.skins)
+        yield from self._contacts.lines(self._reference_points.skins)
         for table in self._sectors.tables():
             yield from table_lines("[[cyclic]]", table)
         for card in self._ties:
@@ -134,10 +134,10 @@ class _Case:
                     both: dict[str, object] = {"slave": sides[0], "master": sides[1]}
                     within = {"tolerance": real(given)} if given else {}
                     yield from table_lines("[[tie]]", both | within)
-        for name, table in self._couplings.tables.items():
+        for name, table in self._reference_points.tables.items():
             yield from table_lines(f"[rigid.{key_of(name)}]", table)
         for number, step in enumerate(self._steps.tables(), 1):
-            coupled = self._couplings.step(number, self._steps.with_amplitude)
+            coupled = self._reference_points.step(number, self._steps.with_amplitude)
             yield from table_lines("[[step]]", step | coupled)
 
     def _each(self, take: Callable[[int, Card], object]) -> None:
@@ -212,7 +212,7 @@ class _Case:
         sheet = {"plane-stress"} == ideals(kind for kind, _ in self.deck.elements.values())
         finite = self._steps.finite and not sheet  # sheets are at small strain alone
         table, left = self._materials.table(body, finite)
-        if body in self._couplings.rigid and "model" not in table:
+        if body in self._reference_points.rigid and "model" not in table:
             return dict(ANY_MATERIAL)  # of a body that does not deform
         self.left_out += left
         return table

@@ -26,7 +26,7 @@ from anisocontact.interface.tangential_law import check_own_variables
 from anisocontact.laws import SIDES
 
 
-class _Later:
+class _UnreadLaw:
     """Stands for a law that has not been read: it gives no traction."""
 
     internal = 0
@@ -62,7 +62,7 @@ def contact_law(
             text = f'"{given.directions_on}" given, a rigid master needs "{SIDES[0]}"'
             raise InputError(text, "python.directions_on")
         along = objects.directions(given.directions, "python.directions")
-        own = PythonLaw(law or _Later(), directions=along, directions_on=given.directions_on)
+        own = PythonLaw(law or _UnreadLaw(), directions=along, directions_on=given.directions_on)
         made = ContactLaw(objects.normal_law(section, auto), own, evolution=section.evolution)
         if section.meshed:
             made.check_meshed()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from anisocontact.bulk import Material
 
 
-class _Later:
+class _UnreadMaterial:
     """Stands for a material that has not been read."""
 
     young = 1.0
@@ -55,6 +55,6 @@ def _own(
     with within(place):
         made = object_of(section, resolve, execute)
         try:
-            return user_material(made or _Later())
+            return user_material(made or _UnreadMaterial())
         except InputError as error:
             raise InputError(str(error), "law") from None

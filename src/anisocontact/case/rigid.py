@@ -8,10 +8,9 @@ from pydantic import Field, model_validator
 from pydantic_core import ErrorDetails
 
 from anisocontact.case.amplitudes import PATH, Scheduled, prescribed
+from anisocontact.case.bodies import Point
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
-
-Point = tuple[float, float, float]
 
 _TURNS = ("rx", "ry", "rz")
 

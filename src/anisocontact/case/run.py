@@ -44,7 +44,7 @@ class Listener(Protocol):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunOutcome:
     """How a run ended.
 
     Args:
@@ -68,7 +68,7 @@ def run(
     listener: Listener,
     checkpoint: Stored | None = None,
     reporter: Reporter = report_here,
-) -> Outcome:
+) -> RunOutcome:
     """Solve the steps of a case and write its results.
 
     A first Ctrl-C, or the signals TERM and HUP, end the run after the current increment, as does a
@@ -98,7 +98,7 @@ def run(
     try:
         writer = _writer(built, folder, text, checkpoint, reporter)
     except WriteError as error:
-        return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
+        return RunOutcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
     request = _StopRequest(listener)
     with on_signals(request.by_signal):
@@ -106,7 +106,7 @@ def run(
     summary = writer.summary
     status, message = summary["status"], summary["message"]
     goes_on = curable and (writer.folder / NAME).is_file()
-    return Outcome(status, message, writer.folder, tuple(summary["warnings"]), goes_on)
+    return RunOutcome(status, message, writer.folder, tuple(summary["warnings"]), goes_on)
 
 
 class _End(NamedTuple):

@@ -18,7 +18,7 @@ from anisocontact.results.lock import locked
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
-    from anisocontact.case.run import Outcome
+    from anisocontact.case.run import RunOutcome
     from anisocontact.results.checkpoint import Stored
     from anisocontact.results.report_process import Reporter
 
@@ -76,7 +76,7 @@ def _run(
     return STOPPED
 
 
-def _explain(outcome: Outcome, arguments: argparse.Namespace, folder: Path) -> None:
+def _explain(outcome: RunOutcome, arguments: argparse.Namespace, folder: Path) -> None:
     """Say why a run stopped, and how it goes on."""
     kept = f"; what converged is in {folder}" if folder.is_dir() else ""
     say(f"error: stopped: {outcome.message}{kept}", sys.stderr)

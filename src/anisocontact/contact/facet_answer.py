@@ -151,7 +151,7 @@ class FacetAnswer[F: Forces]:
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class FacetEvaluation:
     """Slave points against facets where both are, for the laws.
 
     Attributes:

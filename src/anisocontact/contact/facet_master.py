@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
-from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
+from anisocontact.contact.facet_answer import ByPoints, FacetAnswer, FacetEvaluation
 from anisocontact.contact.held_points import HeldPoints, on_held_facets, projected_facets
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.meshed_master import MeshedMaster
@@ -101,12 +101,12 @@ class FacetMaster(MeshedMaster):
         derivative: bool = False,
         separate: bool = False,
     ) -> FacetAnswer[Any]:
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, separate)
+        asked = FacetEvaluation(self.sides, self._hint, self._nodes.now, separate)
         return asked.answer(self._derivative if derivative else self._law, state, dt, tangent)
 
     @override
     def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, True)
+        asked = FacetEvaluation(self.sides, self._hint, self._nodes.now, True)
         batch, own = one_point(asked.batch(state), i, state)
         return OnFacets(
             **of_point,
@@ -142,7 +142,7 @@ class FacetMaster(MeshedMaster):
 
     @override
     def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, False)
+        asked = FacetEvaluation(self.sides, self._hint, self._nodes.now, False)
         law = ContactLaw(*laws).on_facets()
         return asked.answer(law, state, 1.0, False).snapshot.response.failure
 

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.array_types import Flags, Floats, Pair
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import points
-
-Pair = Sequence[float]
-Point = tuple[float, float]
 
 #: det/trace^2 of a tensor below which it has rank one.
 RANK_LIMIT = 1e-12
@@ -35,9 +31,9 @@ class Ellipse:
         [True, False]
     """
 
-    semi_axes: Point
+    semi_axes: tuple[float, float]
     angle: float
-    centre: Point = (0.0, 0.0)
+    centre: tuple[float, float] = (0.0, 0.0)
 
     @property
     def matrix(self) -> Floats:
@@ -94,7 +90,7 @@ class Strip:
 
     half_width: float
     angle: float
-    centre: Point = (0.0, 0.0)
+    centre: tuple[float, float] = (0.0, 0.0)
 
     @property
     def matrix(self) -> Floats:

@@ -98,7 +98,7 @@ def transform_of(kind: str, numbers: Sequence[float]) -> Transform:
 
 
 @dataclass(frozen=True)
-class Support:
+class DeckSupport:
     """What a `*BOUNDARY` holds or leads of a set, or of a node by its number.
 
     Attributes:
@@ -166,7 +166,7 @@ def supports_of(
     cards: Sequence[tuple[int, Card]],
     members: Callable[[str], list[int]],
     named: Callable[[str], list[str]],
-) -> Iterator[Support | Unread]:
+) -> Iterator[DeckSupport | Unread]:
     """The supports of a deck.
 
     Args:
@@ -197,7 +197,7 @@ def supports_of(
                     if isinstance(directed, str):
                         yield Unread(step, directed)
                     elif groups or entry.isdigit():
-                        yield Support(step, entry, groups, *directed, amplitude)
+                        yield DeckSupport(step, entry, groups, *directed, amplitude)
                     else:
                         yield Unread(step, f"{entry.lower()} is on no body")
         except (InputError, ValueError, IndexError) as error:

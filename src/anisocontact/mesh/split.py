@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Ints
 
-type Table = npt.NDArray[Any]
+type Rows = npt.NDArray[Any]
 
 
 class Route:
@@ -29,13 +29,13 @@ class Route:
             self._got = np.empty_like(self._sent)
             comm.Alltoall(self._sent, self._got)
 
-    def there(self, rows: Table) -> Table:
+    def there(self, rows: Rows) -> Rows:
         """Rows that come to this process, those of the first process first."""
         if self._comm.size == 1:
             return rows
         return self._exchanged(rows[self._order], self._sent, self._got)
 
-    def back(self, answers: Table) -> Table:
+    def back(self, answers: Rows) -> Rows:
         """Answers to the rows that this process has sent, in the order of these.
 
         Args:
@@ -47,7 +47,7 @@ class Route:
         out[self._order] = self._exchanged(answers, self._got, self._sent)
         return out
 
-    def _exchanged(self, rows: Table, sent: Ints, got: Ints) -> Table:
+    def _exchanged(self, rows: Rows, sent: Ints, got: Ints) -> Rows:
         width = int(np.prod(rows.shape[1:]))
         out = np.empty((int(got.sum()), *rows.shape[1:]), rows.dtype)
         given = np.ascontiguousarray(rows)
@@ -83,7 +83,7 @@ class Split:
         """Process that has each of these rows."""
         return np.searchsorted(self._starts, numbers, side="right") - 1
 
-    def fetch(self, values: Table, numbers: Ints) -> Table:
+    def fetch(self, values: Rows, numbers: Ints) -> Rows:
         """Rows of all processes.
 
         Args:
@@ -108,7 +108,7 @@ class Split:
         return mask
 
 
-def arranged(comm: Any, total: int, numbers: Ints, *tables: Table) -> list[Table]:
+def arranged(comm: Any, total: int, numbers: Ints, *tables: Rows) -> list[Rows]:
     """Rows in order, an even share of them on every process.
 
     Args:

@@ -28,8 +28,8 @@ from anisocontact.point.history import (
     POINT,
     STEP,
     History,
+    Records,
     StoppedError,
-    Table,
     point_rows,
     set_slip,
 )
@@ -84,7 +84,7 @@ def drive(
         [3.0, -10.0]
     """
     runner = _Runner(interface, load, group or Group())
-    rows: list[tuple[Table, Table]] = []
+    rows: list[tuple[Records, Records]] = []
     message = ""
     try:
         rows.append(runner.press())
@@ -117,8 +117,8 @@ class _Accepted:
     state: State
     pose: GroupPose
     traction: Floats
-    rows: Table
-    step: Table
+    rows: Records
+    step: Records
 
 
 class _Runner:
@@ -147,7 +147,7 @@ class _Runner:
         time = float(self.load.instants[0])
         return _Accepted(time, state, pose, np.zeros((n, 3)), np.zeros(n, dtype=POINT), step)
 
-    def press(self) -> tuple[Table, Table]:
+    def press(self) -> tuple[Records, Records]:
         """The first row: pressed where it starts."""
         t0, t1 = self.load.instants[:2].tolist()
         held = self.load.pressure is not None or self.load.gap is not None
@@ -155,7 +155,7 @@ class _Runner:
         self.now = self._step(device, t0, t1 - t0, sized=False)
         return self.now.step, self.now.rows
 
-    def advance(self, t: float) -> tuple[Table, Table]:
+    def advance(self, t: float) -> tuple[Records, Records]:
         """The row of the instant t, in one step or as many halves as it takes."""
         iterations = substeps = 0
         slip = np.zeros((len(self.group.areas), 3))

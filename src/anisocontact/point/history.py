@@ -17,7 +17,7 @@ from anisocontact.interface import STATUS, Response
 from anisocontact.point.balance import GroupPose
 from anisocontact.surfaces import Surface
 
-Table = npt.NDArray[np.void]
+Records = npt.NDArray[np.void]
 
 #: Columns of a point; vectors in space (3), components in the convective basis or along axes (2).
 POINT = np.dtype(
@@ -104,7 +104,7 @@ class History:
     """
 
     def __init__(
-        self, surface: Surface, steps: Table, points: Table, areas: Floats, turn: float = 0.0
+        self, surface: Surface, steps: Records, points: Records, areas: Floats, turn: float = 0.0
     ) -> None:
         self.surface, self.steps, self.points, self.areas = surface, steps, points, areas
         self.turn = turn
@@ -197,10 +197,10 @@ class StoppedError(RuntimeError):
         self.history = history
 
 
-def point_rows(surface: Surface, pose: GroupPose, response: Response) -> Table:
+def point_rows(surface: Surface, pose: GroupPose, response: Response) -> Records:
     """Rows of all points of a step, (n,) of `POINT`."""
     s, n = response.state, len(response.state)
-    rows: Table = np.zeros(n, dtype=POINT)
+    rows: Records = np.zeros(n, dtype=POINT)
     d1 = surface.jet(s["xi"]).d1
     rows["position"] = pose.points
     for name in ("xi", "gap", "pressure", "slip_accumulated", "status", "dissipation"):
@@ -220,14 +220,14 @@ def point_rows(surface: Surface, pose: GroupPose, response: Response) -> Table:
     return rows
 
 
-def set_slip(surface: Surface, rows: Table, slip: Floats) -> None:
+def set_slip(surface: Surface, rows: Records, slip: Floats) -> None:
     """Replace the sliding increment of rows by the tangential part of vectors (n, 3)."""
     d1, g = surface.jet(rows["xi"]).d1, surface.geometry(rows["xi"])
     rows["slip_contra"] = np.einsum("nij,njk,nk->ni", g.a_contra, d1, slip)
     rows["slip"] = np.einsum("ni,nij->nj", rows["slip_contra"], d1)
 
 
-def _flat(rows: Table, prefix: str = "") -> Iterator[tuple[str, npt.NDArray[Any]]]:
+def _flat(rows: Records, prefix: str = "") -> Iterator[tuple[str, npt.NDArray[Any]]]:
     """Columns of plain numbers with dotted names."""
     for name in rows.dtype.names or ():
         block = rows[name]

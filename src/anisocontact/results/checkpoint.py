@@ -211,9 +211,11 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
     if stored.arrays["mesh/counts"].tolist() != [nodes, len(like.points)]:
         raise InputError("the mesh or the contacts are not those of the run that is to go on")
     near = SAME * float(stored.arrays["mesh/extent"].max())
-    nodal = _Rows("nodal/", *_where(model), near)
+    nodal = _MatchedRows("nodal/", *_where(model), near)
     points = [
-        _Rows(f"points/{i}/", part["reference"], np.zeros(len(part["reference"])), near, part)
+        _MatchedRows(
+            f"points/{i}/", part["reference"], np.zeros(len(part["reference"])), near, part
+        )
         for i, part in enumerate(like.points)
     ]
 
@@ -236,7 +238,7 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
     )
 
 
-class _Rows:
+class _MatchedRows:
     """Rows of nodes or points, found by their positions.
 
     Args:

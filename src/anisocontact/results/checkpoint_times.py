@@ -20,7 +20,7 @@ LEAST_WAIT = 20.0
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldState:
     """An accepted increment without a checkpoint.
 
     Attributes:
@@ -50,7 +50,7 @@ class Checkpoints:
         self._folder, self._model, self._every = folder, model, every
         self._comm = model.mesh.comm
         self._next = monotonic()
-        self._held: Held | None = None
+        self._held: HeldState | None = None
 
     def take(self, disk: Disk, number: int, kept: Persistent, facts: Mapping[str, Any]) -> None:
         """Take an accepted increment, and write its checkpoint if one is due.
@@ -66,7 +66,7 @@ class Checkpoints:
         """
         due = self._comm.bcast(monotonic() >= self._next)  # clocks differ
         # what is written later must not go on with the run
-        self._held = Held(number, kept if due else deepcopy(kept), facts)
+        self._held = HeldState(number, kept if due else deepcopy(kept), facts)
         if due:
             self.write(disk)
 

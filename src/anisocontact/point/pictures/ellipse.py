@@ -8,14 +8,14 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.laws.domain import Strip, domain_from_tensors
-from anisocontact.point.history import Table
+from anisocontact.point.history import Records
 from anisocontact.point.pictures.style import tangential_law
 
 # Of a strip, which has no end, so many half-widths are drawn.
 _STRIP = 6.0
 
 
-def yield_ellipse(interface: Any, row: Table, pressure: float) -> Floats | None:
+def yield_ellipse(interface: Any, row: Records, pressure: float) -> Floats | None:
     """Limit of the force as products with the friction axes, (k, 2) [eq. (115)].
 
     None where the interface has no friction tensor, or the point is open.
@@ -30,7 +30,7 @@ def yield_ellipse(interface: Any, row: Table, pressure: float) -> Floats | None:
     return np.asarray(domain.points() @ frame @ row["friction_axes"].T)
 
 
-def adhesion_domain(interface: Any, row: Table) -> tuple[Floats, Floats] | None:
+def adhesion_domain(interface: Any, row: Records) -> tuple[Floats, Floats] | None:
     """Elastic slip and its limit, (3,) and (k, 3) [eq. (116)].
 
     Of a strip, a part of both edges, and the slip across it: along it there is no centre. None but
@@ -50,7 +50,7 @@ def adhesion_domain(interface: Any, row: Table) -> tuple[Floats, Floats] | None:
     return slip, np.concatenate([first, np.full((1, 3), np.nan), second])
 
 
-def _friction(interface: Any, row: Table) -> Floats | None:
+def _friction(interface: Any, row: Records) -> Floats | None:
     """F in space, (3, 3)."""
     law = tangential_law(interface)
     friction = law.friction if law else None
@@ -59,7 +59,7 @@ def _friction(interface: Any, row: Table) -> Floats | None:
     return np.asarray(friction.tensor(interface.surface, row["xi"][None], "spatial")[0])
 
 
-def _adhesion(interface: Any, row: Table) -> Floats | None:
+def _adhesion(interface: Any, row: Records) -> Floats | None:
     """S = -B in space, (3, 3)."""
     law = tangential_law(interface)
     adhesion = law.adhesion if law else None
@@ -71,7 +71,7 @@ def _adhesion(interface: Any, row: Table) -> Floats | None:
     return tensor
 
 
-def _frame(row: Table) -> Floats:
+def _frame(row: Records) -> Floats:
     """Orthonormal vectors of the tangent plane, the first along the first friction axis, (2, 3)."""
     first = row["friction_axes"][0]
     return np.stack([first, np.cross(row["normal"], first)])

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from anisocontact.base.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
-from anisocontact.point.history import History, Table
+from anisocontact.point.history import History, Records
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.style import COLOURS, INK, UNITS, number, runs
 
@@ -53,7 +53,7 @@ def force_plane(history: History, interface: PointInterface, *, title: str = "")
     return figure
 
 
-def limits(history: History) -> list[tuple[Table, float, str]]:
+def limits(history: History) -> list[tuple[Records, float, str]]:
     """Row and pressure of the limits to be drawn: largest N, and the last one where it differs."""
     n = history.points["pressure"]
     largest, last = float(n.max()), float(n[-1].max())

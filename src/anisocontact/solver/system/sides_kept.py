@@ -17,8 +17,6 @@ from anisocontact.contact.side_of_master import CRUSHED
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.terms.free_modes import ConnectedBody
 
-type Point = tuple[float, float, float]
-
 #: Most nodes of a body on a rank that are looked at.
 MOST_NODES = 200
 #: Share of them behind the master beyond which a body is behind it.
@@ -159,7 +157,9 @@ class SidesKept:
             text = f"body {name!r} is behind its master with {behind:.0%} of it"
             yield Culprit("behind", place, text + far, watched.one.name)
 
-    def _behind(self, watched: _Watched, u: Floats, whole: bool) -> tuple[float, float, Point]:
+    def _behind(
+        self, watched: _Watched, u: Floats, whole: bool
+    ) -> tuple[float, float, tuple[float, float, float]]:
         """Share of a body behind the master that was not at first, how far at most, and where."""
         if watched.body is None:
             return 0.0, 0.0, (0.0, 0.0, 0.0)

@@ -23,7 +23,7 @@ OUT = 1e-6
 
 
 @dataclass(frozen=True)
-class _Rows:
+class _NodalConditions:
     """The conditions `e . u = g` of all nodes that have some, up to R each.
 
     Attributes:
@@ -39,7 +39,7 @@ class _Rows:
     places: Ints
 
     @classmethod
-    def of(cls, guides: Sequence[Guide]) -> _Rows:
+    def of(cls, guides: Sequence[Guide]) -> _NodalConditions:
         """Those of some guides."""
         nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in guides)]))
         at = [np.searchsorted(nodes, guide.nodes) for guide in guides]
@@ -256,7 +256,7 @@ class Guides:
 
     def _take(self, guides: Sequence[Guide]) -> None:
         self._guides = list(guides)
-        self._rows = _Rows.of(self._guides)
+        self._rows = _NodalConditions.of(self._guides)
 
     def _build(self, found: Elimination) -> None:
         node, slave, component = np.nonzero(

@@ -12,13 +12,13 @@ from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.strategies.condensed.assembly_map import AssemblyMap, OppositeNodes
 from anisocontact.solver.strategies.condensed.front import Front, Reals, follow
 
-Block = tuple[slice, Floats]
+DenseBlock = tuple[slice, Floats]
 
 #: Share of the diagonal of the bodies that counts as a change of a row by contacts.
 CLEARLY = 0.1
 
 
-def blocks_times(blocks: Sequence[Block], x: Floats) -> Floats:
+def blocks_times(blocks: Sequence[DenseBlock], x: Floats) -> Floats:
     """Product of symmetric blocks on the diagonal with a vector; what no block covers is zero."""
     out = np.zeros(len(x))
     for place, block in blocks:
@@ -49,7 +49,7 @@ class ContactTangent:
 
     def __init__(
         self,
-        blocks: Sequence[Block],
+        blocks: Sequence[DenseBlock],
         number: Ints,
         count: int,
         spread: scipy.sparse.csr_array | None = None,
