@@ -293,6 +293,14 @@ def test_what_is_legal_and_hardly_meant_is_said(tmp_path):
         "1 nodes are given once more, at another place: the last one counts",
         "surface 'none' has no face of a solid: its set of elements is not there",
     }
+    # nodes of a part count in each of its instances
+    part = other[other.index("*Node") : other.index("*NSET, NSET=Low, G")]
+    (said,) = (
+        note
+        for note in file_arrays(written(tmp_path, INSTANCES.format(nodes=part))).notes
+        if "once more" in note
+    )
+    assert said.startswith("2 nodes are given once more")
 
 
 def test_cells_of_unlike_order_are_refused(tmp_path):
