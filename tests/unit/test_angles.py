@@ -106,3 +106,10 @@ def test_a_shape_takes_one_number_for_a_pair():
 
     given = {"radius": 1, "length": 1, "cells": (4, 1, 1)}
     assert make_shape("cylinder", **given, ratio=2).ratio == (2.0, 2.0)
+
+
+def test_an_angle_that_turns_nothing_is_taken() -> None:
+    """Angles that scripts compute may be next to nothing, and are no numbers to compute with."""
+    assert make_directions("constant", vector=(1, 0, 0), angle=2e-313)
+    with pytest.raises(InputError, match=r"angle: 1e\+60 given"):
+        make_directions("constant", vector=(1, 0, 0), angle=1e60)

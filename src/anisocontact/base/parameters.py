@@ -272,7 +272,8 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
         raise InputError(f"{reprlib.repr(given)} given, finite numbers are needed", field=field)
     _check_bound(p, numbers, given, field)
     for together in (numbers[:3], numbers[3:]) if p.kind == "axis" else (numbers,):
-        if out_of_range(*together):
+        none = p.unit == "angle" and max(map(abs, together), default=0.0) < LEAST  # turns nothing
+        if out_of_range(*together) and not none:
             allowed = RANGE if p.bound in ("positive", "nonzero") else f"0, or {RANGE}"
             raise InputError(f"{reprlib.repr(given)} given, must be {allowed}", field=field)
     return numbers
@@ -303,8 +304,8 @@ def check_size(field: str, numbers: npt.ArrayLike, *, zero: bool = True) -> None
     Example:
         >>> check_size("path", [[0.0, 1e60], [1.0, 0.0]])
         Traceback (most recent call last):
-        anisocontact.base.errors.InputError: path: up to 1e+60 in size given, must be 0, or from \
-1e-50 to 1e+50 in size
+        anisocontact.base.errors.InputError: path: up to 1e+60 given, must be 0, or from 1e-50 \
+to 1e+50 in size
     """
     size = float(np.abs(numbers).max(initial=0.0))
     if out_of_range(size):
