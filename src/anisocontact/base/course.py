@@ -151,15 +151,7 @@ class Course:
     linear = False
 
     def at(self, share: float, duration: float, start: Any) -> Any:
-        """The value at a share of a step.
-
-        Args:
-            share: Share of the step, 0 to 1.
-            duration: Time the step takes.
-            start: Where it was when the step began, a number or array.
-
-        Returns:
-            The value, of the shape of `start`.
+        """See `TimeHistory.at`.
 
         Raises:
             InputError: The amplitude has no finite number there.
