@@ -71,7 +71,7 @@ class ResidualHistory:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
         searches = lately == 0 or lately > before or self._slips_on()
-        if searches or self._falls():
+        if searches or self._falls() or self._recedes():
             return False
         return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
@@ -84,6 +84,17 @@ class ResidualHistory:
         known = self.residuals
         halved = len(known) > STUCK_OVER and known[-1] <= STUCK * known[-1 - STUCK_OVER]
         return bool(halved and np.all(np.diff(known[-IDLE_OVER - 1 :]) < 0.0))
+
+    def _recedes(self) -> bool:
+        """Whether ever fewer points touch and the residual falls, by half over the last ones.
+
+        As a contact recedes it rises first: the first correction has balanced forces with points
+        that are to open. Bodies that part for good have no residual that falls.
+        """
+        fewer = np.diff(self._touching[-IDLE_OVER:])
+        lately = np.array(self.residuals[-IDLE_OVER:])
+        falls = bool(np.all(np.diff(lately) < 0.0)) and lately[-1] <= STUCK * lately[0]
+        return bool(falls and np.all(fewer <= 0))
 
     def _slips_on(self) -> bool:
         """Whether the edge of what sticks moves on, by a point in nearly every correction."""
