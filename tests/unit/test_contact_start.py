@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact, initial_overlap
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
+from anisocontact.mesh import Body, BoxSpec, GmshFile, Model, build_box, build_mesh, make_shape
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
@@ -123,6 +124,29 @@ def test_back_of_the_body_of_the_slave_is_refused(height: float) -> None:
     )
     split = build_mesh([Body("ring", ring)])
     assert len(Contact(split, "ring.start", "ring.end", law=ContactLaw(*_laws())).points)
+
+
+def test_pieces_of_a_body_may_overlap(tmp_path: Path) -> None:
+    """A section of a deck may hold a ring and the shaft that it is pressed on.
+
+    Requirement: two cubes of one section that share no node and overlap by a hundredth of an edge
+    are in contact there, by 0.01 of 1 at every point; nothing is behind anything.
+    """
+    low = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    high = [(x, y, z + 0.99) for x, y, z in low]
+    nodes = "\n".join(f"{n}, {x}, {y}, {z}" for n, (x, y, z) in enumerate(low + high, 1))
+    path = tmp_path / "cubes.inp"
+    path.write_text(
+        f"*NODE\n{nodes}\n*ELEMENT, TYPE=C3D8, ELSET=ALL\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+        "2, 9, 10, 11, 12, 13, 14, 15, 16\n*SURFACE, NAME=DECK\n1, S2\n*SURFACE, NAME=SOLE\n2, S1\n"
+        "*SOLID SECTION, ELSET=ALL\n"
+    )
+    model = build_mesh([GmshFile(path)])
+    for made in (POINTS, MORTAR):
+        found = initial_overlap(made(model, "all.sole", "all.deck", law=ContactLaw(*_laws())), 1.0)
+        assert found is not None
+        assert found.depth == pytest.approx(0.01)
+        assert found.count == 4
 
 
 def test_bodies_that_face_each_other_pass() -> None:

@@ -18,6 +18,8 @@ from anisocontact.mesh.placement import Rotation
 _SIZES = {"ISOTROPIC": 2, "ISO": 2, "ORTHO": 9, "ORTHOTROPIC": 9, "ENGINEERINGCONSTANTS": 9}
 #: Kind of `*HYPERELASTIC` -> how many constants it has; none where N says it.
 _RUBBERS = {"NEOHOOKE": 1, "MOONEY-RIVLIN": 2, "YEOH": 3, "OGDEN": 0}
+#: Keys of a material that yields.
+_YIELDS = ("flow_curve", "yield_stress", "kinematic")
 #: Share of the range of temperatures that a body may differ by and count as uniform.
 UNIFORM = 1e-9
 
@@ -69,7 +71,9 @@ class Materials:
                 return {}, [f"material of {body}: *ORIENTATION {orientation} is not read"]
             strain = {"strain": "green-lagrange"} if finite else {}
             axes = self._directions.get(orientation, {})
-            return {"model": "orthotropic"} | known | axes | strain, []
+            elastic = {key: value for key, value in known.items() if key not in _YIELDS}
+            left = [f"material of {body}: *PLASTIC of an orthotropic one; see the model hill"]
+            return {"model": "orthotropic"} | elastic | axes | strain, left[: elastic != known]
         if "flow_curve" in known or "yield_stress" in known:
             strain = {"strain": "logarithmic"} if finite else {}
             return {"model": "plastic"} | known | strain, []

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_forces import NodalForces, StepForces
 from anisocontact.case.deck_materials import Temperatures
 from anisocontact.case.deck_procedures import STATIC
 from anisocontact.mesh.arrays import MeshArrays
@@ -79,6 +80,8 @@ class Steps:
         self._temperatures = cache(temperatures)
         self._steps: list[_Step] = []
         self._turned: set[int] = set()
+        #: Group of a force or a support -> numbers of its nodes.
+        self._members: dict[str, set[int]] = {}
         self.finite = False
         self.nodes: dict[str, list[float]] = {}
         self.constant: dict[str, float] = {}
@@ -132,7 +135,26 @@ class Steps:
                 left.append(f"step {one.step}: {one.text}")
             elif self._steps:
                 left += self._support(one)
+        left += self._tidy_forces()
         self._renew()
+        return left
+
+    def _tidy_forces(self) -> list[str]:
+        """Bring forces on nodes to what they mean here; lines on what is left out."""
+        nodal = NodalForces(self._deck, self._members, frozenset(self._mesh.facets), self._named)
+        given = [
+            StepForces(
+                f"step {step.name!r}",
+                step.keys.setdefault("force", {}),
+                step.keys.get("displacement", {}),
+                "displacement" in step.new,
+            )
+            for step in self._steps
+        ]
+        left = list(nodal.tidy(given))
+        for step in self._steps:
+            if not step.keys["force"]:
+                del step.keys["force"]
         return left
 
     def tables(self) -> Iterator[dict[str, object]]:
@@ -149,6 +171,7 @@ class Steps:
         if not groups:
             yield f"support of node {one.entry}: it is on no body"
         for group in groups:
+            self._members[group] = set(self._deck.nodes_of(one.entry))
             given = {
                 name: self.with_amplitude(value, one.amplitude) for name, value in one.given.items()
             }
@@ -209,8 +232,9 @@ class Steps:
             nodes = np.unique(self._deck.nodes_of(entry))
             if not self._turned.isdisjoint(nodes.tolist()):
                 raise InputError(f"{entry.lower()} has a *TRANSFORM; forces along x, y, z are read")
-            total = real(value) * len(nodes)
-            yield "force", self._loaded(entry), {"xyz"[int(direction) - 1]: total}
+            total, group = real(value) * len(nodes), self._loaded(entry)
+            self._members[group] = set(nodes.tolist())
+            yield "force", group, {"xyz"[int(direction) - 1]: total}
 
     def temperatures(self, card: Card) -> Iterator[_Load]:
         """Temperatures of bodies of `*TEMPERATURE`."""

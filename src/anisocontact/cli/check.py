@@ -162,11 +162,12 @@ def _pass(contact: Contact) -> str:
 
 def _points(built: Built) -> Iterator[str]:
     """What was found for the names of points and edges; collective."""
-    model = built.problem.model
+    model, comm = built.problem.model, built.problem.comm
+    x = model.space.tabulate_dof_coordinates()
+    least = 1e-9 * max(comm.allgather(float(np.abs(x).max(initial=0.0))))
     for name in built.file.case.nodes:
-        x = model.space.tabulate_dof_coordinates()[model.nodes(name)]
-        places = np.concatenate(built.problem.comm.allgather(x))
-        shown = np.where(np.abs(places) > 1e-9 * np.abs(places).max(), places, 0.0)[0]
+        places = np.concatenate(comm.allgather(x[model.nodes(name)]))
+        shown = np.where(np.abs(places) > least, places, 0.0)[0]
         at = ", ".join(f"{v:.6g}" for v in shown)
         where = f"at ({at})" if len(places) == 1 else "on a line"
         yield f"nodes     {name}: {len(places)} {where}"

@@ -172,11 +172,16 @@ def _check_sides(contact: Beginning, size: float) -> None:
 
 
 def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal: Floats) -> None:
-    """A body that is drawn does not overlap itself: what is behind all of a slave is its back."""
+    """A body that is drawn does not overlap itself: what is behind all of a slave is its back.
+
+    Pieces of it that share no node may overlap, as a ring and the shaft that it is pressed on.
+    """
     body = contact.slave.partition(".")[0]
     comm = contact.space.mesh.comm
     own = all(group.partition(".")[0] == body for group in contact.master.groups)
     if not (own and contact.master.groups) or comm.allreduce(int((located & ~behind).sum())):
+        return
+    if not contact.master.on_piece_of_slave():
         return
     _refuse(
         contact,

@@ -83,6 +83,10 @@ class Master(Protocol):
     reach: float = np.inf
     retraceable: bool = True
 
+    def on_piece_of_slave(self) -> bool:
+        """Whether a connected part of the mesh has facets of both sides; collective."""
+        return False
+
     def initial_state(self) -> State:
         """State of the points before the first step, free of force."""
 

@@ -15,6 +15,7 @@ from anisocontact.contact.images import Images
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.remote_nodes import NONE, RemoteNodes, node_count, owned_among
 from anisocontact.contact.sweep import Sweep
+from anisocontact.mesh.connected_components import component_of_nodes
 from anisocontact.mesh.split import Route, Split, arranged
 
 
@@ -76,6 +77,19 @@ class MasterSurface:
             all_of_it = FacetMesh(own.topology, nodes, own.flip[order], sweep)
             self.facets = all_of_it if beyond is None else beyond.whole(all_of_it)
             self.numbers, self._far = np.arange(len(self.facets.nodes)), RemoteNodes(space, NONE)
+
+    def on_piece_of(self, other: FacetMesh) -> bool:
+        """Whether a connected part of the mesh has these facets and others; collective.
+
+        Args:
+            other: Facets that this rank owns, with its local nodes.
+        """
+        label = component_of_nodes(self._space)
+        # images of nodes have the numbers after them, row by row, see `Sweep`
+        pieces = [set(label[mesh.nodes % len(label)].flat) for mesh in (self.own, other)]
+        everywhere = self._space.mesh.comm.allgather(pieces)
+        first, second = (set().union(*found) for found in zip(*everywhere, strict=True))
+        return not first.isdisjoint(second)
 
     def gather(self, numbers: Ints) -> None:
         """Have these facets instead of those before; collective.

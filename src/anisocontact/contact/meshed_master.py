@@ -45,6 +45,10 @@ class MeshedMaster(Master):
         self._rests = False
         self.take(law, law)
 
+    def on_piece_of_slave(self) -> bool:
+        """Whether a connected part of the mesh has facets of both sides; collective."""
+        return self._gathered.on_piece_of(self.sides.slave)
+
     @property
     def facets(self) -> Locals:
         """Nodes of the facets that this rank has, (m, k)."""
