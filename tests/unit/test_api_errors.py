@@ -17,7 +17,7 @@ from anisocontact.bulk import UserEnergy, make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, Model, build_box, make_shape
+from anisocontact.mesh import Body, BoxSpec, Model, build_box, make_shape, read_gmsh
 from anisocontact.point import DeadLoad, PrescribedPath
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, Until
@@ -107,6 +107,17 @@ WRONG = {
     "a number for a motion": (
         lambda m: Step("a", 1, motion={"die": 0.1}),
         "motion.die: 0.1 given, values by axis needed",
+    ),
+    "no name of a step": (lambda m: Step("", 1), "name: '' given, a name of one letter or more"),
+    "a body with a dot": (
+        lambda m: Body("a.b", make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(1, 1, 1))),
+        "name: 'a.b' given, a name without a dot needed",
+    ),
+    "no path": (lambda m: read_gmsh(None), "path: None given, .* needed"),
+    "a folder for a file": (lambda m: read_gmsh("/"), "mesh file '/' is a folder"),
+    "next to no friction along one axis": (
+        lambda m: Friction(coefficients=(1e-60, 0.1)),
+        r"coefficients: \(1e-60, 0.1\) given, must be 0, or from 1e-50",
     ),
     "a number for loads": (
         lambda m: Step("a", 1, load={"die": np.nan}),

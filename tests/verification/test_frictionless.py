@@ -73,11 +73,12 @@ def test_without_friction_no_adhesion_holds(adhesion):
 def test_what_has_no_ellipse_is_refused():
     """A force that is limited along one axis and zero along the other, F not a number."""
     marks = make_directions("constant", vector=(1, 0, 0))
-    for given in ((0.3, 0.0), (0.0, 0.3), (0.3, 1e-200)):
+    for given in ((0.3, 0.0), (0.0, 0.3)):
         with pytest.raises(InputError, match=r"friction\.coefficients: .* both > 0, or both 0"):
             Friction(coefficients=given, directions=marks)
-    with pytest.raises(InputError, match="coefficients: 1e-200 given, must be 0, or from 1e-50"):
-        Friction(coefficients=1e-200, directions=marks)
+    for small in (1e-200, (0.3, 1e-200)):
+        with pytest.raises(InputError, match=r"coefficients: .* must be 0, or from 1e-50"):
+            Friction(coefficients=small, directions=marks)
     with pytest.raises(InputError, match="infinite without friction"):
         Friction(coefficients=0).tensor(
             make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), [[0, 0]]

@@ -41,6 +41,8 @@ def first_difference(old: Any, new: Any, near: float = 0.0, place: str = "") -> 
         ]
     elif _is_list(old) and _is_list(new) and len(old) == len(new):
         pairs = [(f"{place}[{i}]", a, b) for i, (a, b) in enumerate(zip(old, new, strict=True))]
+    elif _is_list(old) and _is_list(new) and (_has_tables(old) or _has_tables(new)):
+        return Difference(place, f"{len(old)} of them", f"{len(new)} of them")
     else:
         return None if _same(old, new, near) else Difference(place, _shown(old), _shown(new))
     found = (first_difference(a, b, near, where) for where, a, b in pairs)
@@ -49,6 +51,11 @@ def first_difference(old: Any, new: Any, near: float = 0.0, place: str = "") -> 
 
 def _is_list(value: Any) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, str)
+
+
+def _has_tables(values: Sequence[Any]) -> bool:
+    """Whether there are tables in a list, whose texts are long and begin alike."""
+    return any(isinstance(value, Mapping) for value in values)
 
 
 def _same(old: Any, new: Any, near: float) -> bool:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 
+#: Increments beyond which a step has no end.
+MOST_INCREMENTS = 10_000_000
 #: Angle by which normal, axes of adhesion or slave may turn along a step at points in contact,
 #: radian: the tangential force is off by some tenths of a per cent.
 FOLLOWED = math.radians(15.0)

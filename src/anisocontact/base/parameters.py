@@ -271,12 +271,19 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
     if not all(math.isfinite(v) for v in numbers):
         raise InputError(f"{reprlib.repr(given)} given, finite numbers are needed", field=field)
     _check_bound(p, numbers, given, field)
-    for together in (numbers[:3], numbers[3:]) if p.kind == "axis" else (numbers,):
+    for together in _together(p, numbers):
         none = p.unit == "angle" and max(map(abs, together), default=0.0) < LEAST  # turns nothing
         if out_of_range(*together) and not none:
             allowed = RANGE if p.bound in ("positive", "nonzero") else f"0, or {RANGE}"
             raise InputError(f"{reprlib.repr(given)} given, must be {allowed}", field=field)
     return numbers
+
+
+def _together(p: Parameter, numbers: list[float]) -> list[list[float]]:
+    """Numbers that count by the largest of them: components of a vector, not values of two axes."""
+    if p.kind == "axis":
+        return [numbers[:3], numbers[3:]]
+    return [[number] for number in numbers] if p.kind == "pair" else [numbers]
 
 
 def out_of_range(*numbers: float) -> bool:

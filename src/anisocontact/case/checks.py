@@ -305,6 +305,9 @@ def _points_and_faces(case: Case) -> Iterator[InputError]:
 def _steps(case: Case) -> Iterator[InputError]:
     seen: dict[str, int] = {}
     for i, step in enumerate(case.step):
+        if not step.name.strip():
+            text = f'"{step.name}" given, a name of one letter or more needed'
+            yield InputError(text, field=f"step[{i}].name")
         first = seen.setdefault(step.name, i)
         if first != i:
             text = f'"{step.name}" given, step[{first}] has that name already'

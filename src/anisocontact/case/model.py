@@ -20,7 +20,7 @@ from pydantic import (
     create_model,
 )
 
-from anisocontact.base.limits import Limits
+from anisocontact.base.limits import MOST_INCREMENTS, Limits
 from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import AUTO
 from anisocontact.case.amplitudes import amplitude_table, path_table
@@ -56,7 +56,10 @@ class StepSection(Loading):
     """A load step: values are reached at its end, linearly; what is not named is held."""
 
     name: str = Field(description="name of the step, used once")
-    increments: Annotated[int, _number("integer", "1", "number of equal increments", "positive")]
+    increments: Annotated[
+        int,
+        _number("integer", "1", "number of equal increments", "positive", most=MOST_INCREMENTS),
+    ]
     duration: Annotated[float, _number("scalar", "time", "time the step takes", "positive")] = 1.0
     until: UntilSection | None = Field(None, description=str(UntilSection.__doc__))
     motion: dict[str, Motion] = Field(

@@ -55,6 +55,10 @@ class Body:
     shape: Shape
     placement: Placement = IN_PLACE
 
+    def __post_init__(self) -> None:
+        if not self.name or "." in self.name:
+            raise InputError(f"{self.name!r} given, a name without a dot needed", "name")
+
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
         """The body in place; see `Source`."""
         shape = self.shape

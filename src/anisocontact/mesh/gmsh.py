@@ -15,6 +15,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
+from anisocontact.base.typed import typed
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, check_has_cells, facet_owners
 from anisocontact.mesh.idealisation import SOLID, Idealisation
@@ -62,6 +63,7 @@ _GROUPS = {3: "volume", 2: "the file has no volumes, and surface"}
 _CORNERS = {1: 2, 8: 2, 2: 3, 9: 3}
 
 
+@typed
 def read_gmsh(
     path: str | Path,
     bodies: Sequence[str] | None = None,
@@ -95,6 +97,21 @@ def read_gmsh(
     return Model.from_arrays(arrays, idealisation=idealisation)
 
 
+def check_file(path: Path, field: str) -> None:
+    """Refuse what is no file.
+
+    Args:
+        path: Where a mesh file should be.
+        field: Where the path was written, for messages.
+
+    Raises:
+        InputError: Nothing is there, or a folder.
+    """
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "does not exist"
+        raise InputError(f"mesh file {str(path)!r} {what}", field)
+
+
 def gmsh_arrays(
     path: Path,
     bodies: Sequence[str] | None = None,
@@ -105,8 +122,7 @@ def gmsh_arrays(
 
     Each process of `comm` gets its share of them.
     """
-    if not path.is_file():
-        raise InputError(f"mesh file {str(path)!r} does not exist", field)
+    check_file(path, field)
     try:
         msh = read_msh(path, comm)
         dim = 3 if any(block.dim == 3 for block in msh.blocks) else 2

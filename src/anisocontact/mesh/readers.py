@@ -11,7 +11,7 @@ from anisocontact.base.fenicsx import MPI
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.cad import CAD, cad_arrays
-from anisocontact.mesh.gmsh import gmsh_arrays
+from anisocontact.mesh.gmsh import check_file, gmsh_arrays
 from anisocontact.mesh.meshio_files import SUFFIXES, read_by_meshio
 from anisocontact.mesh.unv import read_unv
 from anisocontact.mesh.whole import WholeMesh
@@ -120,8 +120,7 @@ def file_arrays(
     Raises:
         InputError: The file is missing or damaged, or has no such body.
     """
-    if not path.is_file():
-        raise InputError(f"mesh file {str(path)!r} does not exist", field)
+    check_file(path, field)
     return _READERS.get(path.suffix.lower(), gmsh_arrays)(path, bodies, field, comm)
 
 

@@ -184,6 +184,8 @@ def load_checkpoint(folder: Path) -> Stored | None:
             raise ValueError("it is no archive of arrays")
         with path.open("rb") as opened, np.load(opened) as file:
             arrays = dict(file)
+        if "facts" not in arrays:
+            raise ValueError("it is no checkpoint of a run, but other arrays")
         facts = json.loads(arrays.pop("facts").tobytes())
     if facts.get("format") != FORMAT:
         raise InputError(

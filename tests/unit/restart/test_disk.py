@@ -19,7 +19,7 @@ from anisocontact.results import checkpoint
 from anisocontact.results.files import Disk, WriteError
 
 
-@pytest.mark.parametrize("kind", ["cut", "noise", "text", "format"])
+@pytest.mark.parametrize("kind", ["cut", "noise", "text", "other arrays", "format"])
 def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
     path = whole / "checkpoint.npz"
     if kind == "cut":
@@ -28,6 +28,8 @@ def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
         path.write_bytes(b"PK" + bytes(range(256)))
     elif kind == "text":
         path.write_text("no archive")
+    elif kind == "other arrays":
+        np.savez(path, x=np.zeros(3))
     else:
         stored = checkpoint.load_checkpoint(whole)
         assert stored is not None
@@ -37,6 +39,7 @@ def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1
     assert "checkpoint.npz" in error
+    assert ("it is no checkpoint of a run" in error) == (kind == "other arrays")
     assert "pickle" not in error  # what NumPy says of files that it does not know
 
 

@@ -147,6 +147,12 @@ def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, whole, same
         ("increments = 2", "increments = 3", "step[0].increments: 3 given, the run"),
         ("normal = { penalty = 1e5 }\n", "", "contact[0].normal: nothing given, the run that is"),
         ('name = "press"', 'name = "push"', "step[0].name: 'push' given, the run"),
+        (
+            "[output]",
+            '[[contact]]\nslave = "block.left"\nmaster = "plate"\n'
+            "friction = { coefficients = 0 }\n[output]",
+            "contact: 2 of them given, the run that is to go on had 1 of them",
+        ),
     ],
 )
 def test_a_case_file_that_does_not_fit_is_refused(capsys, case, case_text, whole, old, new, line):

@@ -102,9 +102,10 @@ def make_parts(
 
     Raises:
         InputError: A body without material, a material without body, two contacts of one name,
-            or one on another model.
+            one on another model, or a slave in a plane of symmetry.
     """
     _check(model, materials, contacts)
+    _check_planes(contacts, connections.symmetry)
     specs = connections.attached
     faces = CoupledFaces(connections.coupled, model, materials, middle_nodes(model))
     bulk = _bulk(model, materials, faces)
@@ -193,6 +194,15 @@ def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) ->
 def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:
     """Whether one of the bodies of a contact is at finite strain."""
     return not all(small_strain(materials[model.body_of(group)]) for group in contact.groups)
+
+
+def _check_planes(contacts: Sequence[Contact], symmetry: Sequence[str]) -> None:
+    """Refuse slaves in planes of symmetry: held along their normal, they meet nothing."""
+    for contact in contacts:
+        if contact.slave in symmetry:
+            text = f"{contact.slave!r} given, the slave of contact {contact.name!r}"
+            cure = "held along its normal it would carry no pressure; name the cut faces"
+            raise InputError(f"{text}: {cure}", "symmetry")
 
 
 def _check(

@@ -15,6 +15,7 @@ from anisocontact.base.course import (
     way_cut_off,
 )
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.limits import MOST_INCREMENTS
 from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
@@ -28,8 +29,6 @@ _FORCES = ("traction", "force", "body_force")
 # Fields that have one number for each name.
 _PLAIN = ("pressure", "temperature")
 
-#: Increments beyond which a step has no end.
-MOST_INCREMENTS = 10_000_000
 #: Share of the way along a path above which it is said that increments cut it off.
 _CUT_OFF = 0.05
 #: Field of a step, name of what is prescribed, component.
@@ -95,6 +94,8 @@ class Step:
     until: Until | None = None
 
     def __post_init__(self) -> None:
+        if not self.name.strip():
+            raise InputError(f"{self.name!r} given, a name of one letter or more needed", "name")
         if not 1 <= self.increments <= MOST_INCREMENTS:
             allowed = f"allowed: 1 to {MOST_INCREMENTS}"
             raise self._error("increments", f"{self.increments} given, {allowed}")
