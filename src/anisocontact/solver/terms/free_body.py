@@ -11,9 +11,12 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody
+from anisocontact.solver.terms.rigid_prediction import RigidPrediction
 
 #: Share of a facet by which a body on springs that touches may move at once.
 TOUCHING = 0.01
+#: Share of the gap that springs let a body close at once, so that it is closed.
+OVERSHOOT = 2.0
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
 #: Share of what springs carry beyond which loads have to be what they stand against.
@@ -37,7 +40,8 @@ class FreeBody:
             body without, of which no face follows a reference point either.
         least: Stiffness that counts as none, force/length.
         nodes: Nodes of this rank that stabilisation acts on, see `act_on`.
-        count: Their number over all ranks.
+        sides: Of each of its contacts 1 where it is the slave, -1 where it is the master, 0 where
+            it is both.
         stiffness: Of stabilisation at each of them, force/length.
         load: Norm of the sum of all loads on it, force.
         pushed: Loads along the motions of `left`, (j,).
@@ -53,20 +57,41 @@ class FreeBody:
     springs: Floats | None
     least: float
     nodes: Ints = field(init=False)
-    count: int = field(init=False)
+    sides: list[float] = field(init=False)
     _touchable: Ints = field(init=False)
     stiffness: float = 0.0
     load: float = 0.0
     pushed: Floats = field(default_factory=lambda: np.zeros(0))
     trusted: bool = False
+    _prediction: RigidPrediction = field(init=False)
 
     def __post_init__(self) -> None:
-        sides = [self._within(contact.nodes_of_groups[:1]) for contact in self.contacts]
-        slave = np.unique(np.concatenate(sides))
+        own = [self._within(contact.nodes_of_groups[:1]) for contact in self.contacts]
+        slave = np.unique(np.concatenate(own))
         if not self.contacts[0].space.mesh.comm.allreduce(len(slave)):
-            sides = [self._within(contact.nodes_of_groups[1:]) for contact in self.contacts]
-        self._touchable = np.unique(np.concatenate(sides))
+            own = [self._within(contact.nodes_of_groups[1:]) for contact in self.contacts]
+        self._touchable = np.unique(np.concatenate(own))
+        of = [self.body.sides(contact) for contact in self.contacts]
+        self.sides = [float(one[0]) - float(any(one[1:])) for one in of]
         self.act_on(None)
+
+    def start(self, u: Floats, load: Floats, where: Flags | None) -> None:
+        """Begin an attempt from the accepted state.
+
+        Args:
+            u: Accepted displacement of the local nodes, (nodes, 3), length.
+            load: Forces on the nodes this rank owns, (owned, 3).
+            where: As of `act_on`.
+        """
+        space = self.contacts[0].space
+        self.act_on(where)
+        total = space.mesh.comm.allreduce(load[self.body.nodes].sum(axis=0))
+        self.load = float(np.linalg.norm(total))
+        self.pushed = self.along_free(load[self.body.nodes])
+        x, nodes = space.tabulate_dof_coordinates()[self.nodes], self.nodes
+        self._prediction = RigidPrediction(
+            self.body, self.left, nodes, x, u[nodes], space.mesh.comm
+        )
 
     def act_on(self, where: Flags | None) -> None:
         """Let stabilisation act where contacts do, on some of the nodes alone, flags of nodes.
@@ -77,11 +102,14 @@ class FreeBody:
         self.nodes = self._touchable
         if where is not None:  # on one process
             self.nodes = self.nodes[where[self.nodes]]
-        self.count = max(self.contacts[0].space.mesh.comm.allreduce(len(self.nodes)), 1)
 
     def _within(self, groups: Sequence[Locals]) -> Ints:
         """Nodes of groups that are its own and of this rank."""
         return np.intersect1d(np.concatenate([np.zeros(0, np.int32), *groups]), self.body.nodes)
+
+    def meets(self, contact: Contact) -> bool:
+        """Whether a contact is one of its own."""
+        return any(contact is one for one in self.contacts)
 
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
@@ -114,7 +142,7 @@ class FreeBody:
         """
         matrix = np.zeros((len(self.left), len(self.left)))
         for contact in self.contacts:
-            closed = _closed(contact, at_start)
+            closed = closed_points(contact, at_start)
             normal = contact.trial.normal[closed]
             arms = (contact.points[closed] - self.body.centre) / self.body.size
             along = np.concatenate([normal, np.cross(arms, normal)], axis=1) @ self.left.T
@@ -139,17 +167,55 @@ class FreeBody:
             for c in self.contacts
         ]
         least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
-        return float(min(max(2.0 * least, TOUCHING * self.size), self.size))
+        return float(min(max(OVERSHOOT * least, TOUCHING * self.size), self.size))
 
-    def carried_by(self, force: Floats, stiffness: float) -> float:
-        """How far forces on its nodes carry it along its free motions, length.
+    def stiffness_in_reach(self, push: Floats, at_start: bool = False) -> float:
+        """Stiffness of its springs at which forces carry it as far as `reach`, force/length.
+
+        Turns count with the ways of the nodes that have springs.
+
+        Args:
+            push: Generalised forces along its free motions, (j,).
+            at_start: As of `touched`.
+        """
+        predicted = self._prediction
+        return predicted.way(predicted.motion(push)) / self.reach(at_start)
+
+    def stiffness_to_land(
+        self, push: Floats, supports: Sequence[Contact], at_start: bool = False
+    ) -> float:
+        """Stiffness of its springs at which it lands where forces turn it, force/length.
+
+        Where closed points leave motions, as a corner does that a tall body stands on, forces carry
+        it along these: no farther than open points come down by twice their gap.
+
+        Args:
+            push: Generalised forces along its free motions, (j,).
+            supports: Contacts with what is held.
+            at_start: As of `touched`.
+        """
+        comm = self.contacts[0].space.mesh.comm
+        resisted, down, gaps = np.zeros((len(push), len(push))), [], []
+        for contact, side in zip(self.contacts, self.sides, strict=True):
+            normal = side * contact.trial.normal
+            along = np.einsum("nai,na->ni", self._prediction.at(contact.current.points), normal)
+            closed, gap = closed_points(contact, at_start), contact.trial.gap
+            if any(contact is one for one in supports):
+                resisted += along[closed].T @ along[closed]
+            above = ~closed & contact.located() & (gap > 0.0)
+            down.append(-along[above])
+            gaps.append(np.maximum(gap[above], TOUCHING * self.size))
+        turned = self._prediction.motion(push, comm.allreduce(resisted))
+        rates = np.concatenate(down) @ turned / (OVERSHOOT * np.concatenate(gaps))
+        return float(max(comm.allgather(float(rates.max(initial=0.0)))))
+
+    def carried(self, force: Floats) -> Floats:
+        """Generalised forces that its springs leave to others where they let go, (j,).
 
         Args:
             force: Of the springs of stabilisation, (nodes, 3).
-            stiffness: Of each of these springs, force/length.
         """
-        work = self.along_free(force[self.body.nodes])
-        return float(np.linalg.norm(work) / (self.count * stiffness))
+        return -self._prediction.along(force[self.nodes])
 
     def along_free(self, force: Floats) -> Floats:
         """Generalised forces along its free motions of forces on its nodes, (nodes, 3); (j,)."""
@@ -172,7 +238,7 @@ class FreeBody:
             at_start: Whether an attempt starts here: points count as well that multipliers are to
                 hold in its first correction, since the rounding of their gap has no say.
         """
-        closed = any(bool(_closed(contact, at_start).any()) for contact in self.contacts)
+        closed = any(bool(closed_points(contact, at_start).any()) for contact in self.contacts)
         return any(self.contacts[0].space.mesh.comm.allgather(closed))
 
     def _count(self, *statuses: str) -> int:
@@ -213,9 +279,41 @@ class FreeBody:
         return np.asarray(np.einsum("ipr,prc,jpc->ij", here, blocks, there, optimize=True))
 
 
-def _closed(contact: Contact, at_start: bool) -> Flags:
+def closed_points(contact: Contact, at_start: bool = False) -> Flags:
     """Points of a contact that are closed in the trial, see `FreeBody.touched`, (n,)."""
     closed = contact.trial.status != 0
     if at_start:
         closed |= contact.trials.start["multiplier"] > 0.0
     return np.asarray(closed)
+
+
+def held_contacts(bodies: Sequence[FreeBody], at_start: bool = False) -> list[list[Contact]]:
+    """Contacts of each of some free bodies whose other side is held; collective.
+
+    What none of them is on is held, and a body that touches what is held is so itself.
+
+    Args:
+        bodies: All free bodies.
+        at_start: As of `FreeBody.touched`.
+    """
+    on = {id(c): c for one in bodies for c in one.contacts}
+    closed = {
+        k: c.space.mesh.comm.allreduce(int(closed_points(c, at_start).any())) > 0
+        for k, c in on.items()
+    }
+    owners = {k: [i for i, one in enumerate(bodies) if one.meets(c)] for k, c in on.items()}
+    held: set[int] = set()
+
+    def on_held(i: int) -> list[Contact]:
+        sides = zip(bodies[i].contacts, bodies[i].sides, strict=True)
+        return [c for c, side in sides if side and held.issuperset(set(owners[id(c)]) - {i})]
+
+    while True:
+        found = {
+            i
+            for i in range(len(bodies))
+            if i not in held and any(closed[id(c)] for c in on_held(i))
+        }
+        if not found:
+            return [on_held(i) for i in range(len(bodies))]
+        held |= found

@@ -23,7 +23,8 @@ from anisocontact.contact import Contact, NotHeldError
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
-from anisocontact.solver.terms.free_body import FreeBody
+from anisocontact.solver.terms.flown_off import farthest_way
+from anisocontact.solver.terms.free_body import FreeBody, closed_points, held_contacts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
@@ -34,6 +35,9 @@ from anisocontact.solver.terms.viscous_flow import ViscousFlow
 SHARE = 1e-7
 #: What the stiffness is multiplied with from one equilibrium to the next, once touched.
 FADE = 0.1
+#: What it is multiplied with at most where a body that has come down on some of its points would
+#: turn about them too far, and equilibria in an increment after which it fades only.
+RAISE, PATIENCE = 10.0, 20
 #: Stiffness without loads, and the least one, shares of the mean diagonal of the bulk.
 WITHOUT_LOADS, LEAST = 1e-6, 1e-11
 #: Force of contact over the stiffness and the size of a facet that is none.
@@ -83,14 +87,11 @@ class Stabilisation(Term):
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
-        lowest = self._comm.allgather(model.positions.min(axis=0, initial=np.inf))
-        highest = self._comm.allgather(model.positions.max(axis=0, initial=-np.inf))
-        self._extent = float(np.linalg.norm(np.max(highest, axis=0) - np.min(lowest, axis=0)))
         self._attached = attached
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
-        self._falling: list[FreeBody] = []
+        self._before: dict[int, tuple[Flags, Floats]] = {}
         self._fell = self._driven = False
         self._where: Flags | None = None
         self._caught = False
@@ -184,15 +185,20 @@ class Stabilisation(Term):
         self._begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
         self._carried = np.zeros_like(u)
-        self._falling = [free for free in self._free if not free.touched()]
+        self._before = {
+            id(c): (np.zeros(len(c.state), dtype=np.bool_), np.zeros_like(u))
+            for free in self._free
+            if not free.touched()
+            for c in free.contacts
+        }
         self._driven = self._fell = any([not f.touched(at_start=True) for f in self._free])
         for free in self._loose:
-            free.act_on(self._where)
-            total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
-            free.load = float(np.linalg.norm(total))
-            free.pushed = free.along_free(load[free.body.nodes])
-        for free in self._free:
-            needed = free.load / (free.count * free.reach(at_start=True))
+            free.start(u, load, self._where)
+        on_held = held_contacts(self._free, at_start=True)
+        for free, held in zip(self._free, on_held, strict=True):
+            needed = free.stiffness_in_reach(free.pushed, at_start=True)
+            if free.touched(at_start=True):
+                needed = max(needed, free.stiffness_to_land(free.pushed, held, at_start=True))
             free.trusted = not self.careful and free.may_hold()
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
@@ -253,26 +259,37 @@ class Stabilisation(Term):
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
             )
         self._anchor, self._carried = u.copy(), force
-        for free in self._free:
-            fades = FADE * free.stiffness
-            if free.touched():
-                fades = min(fades, free.load / (free.count * free.reach()))
-            elif free.carried_by(force, fades) > free.reach():
-                continue
+        for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
-                free.stiffness = max(fades, LEAST * self._scale)
+                free.stiffness = max(self._next_stiffness(free, held, force), LEAST * self._scale)
         return True
 
-    def _stopping(self, u: Floats) -> Floats:
-        """Forces of contact that have stopped falls on the way to here, (nodes, 3).
+    def _next_stiffness(self, free: FreeBody, held: Sequence[Contact], force: Floats) -> float:
+        """Stiffness of the springs of a body for its next equilibrium.
 
-        Nothing carried the body on that way: what they leave of the work of loads is lost.
+        They fade, but let it go no farther than it may at once: in the air than it may fall, and
+        where it has come down on some of its points than the others have to.
+        """
+        now, carried = free.stiffness, free.carried(force)
+        if not free.touched():
+            return max(FADE * now, min(free.stiffness_in_reach(carried), now))
+        fades = min(FADE * now, free.stiffness_in_reach(free.pushed))
+        needed = free.stiffness_to_land(carried, held) if self._count <= PATIENCE else 0.0
+        return max(fades, min(needed, RAISE * now))
+
+    def _stopping(self, u: Floats) -> Floats:
+        """What contacts have come to carry where bodies came down on the way to here, (nodes, 3).
+
+        Nothing carried them on that way: what it leaves of the work of loads is lost.
         """
         out = np.zeros_like(u)
-        landed = [free for free in self._falling if free.touched()]
-        for contact in {id(c): c for free in landed for c in free.contacts}.values():
-            contact.add_force(out)
-        self._falling = [free for free in self._falling if not free.touched()]
+        for contact in {id(c): c for free in self._free for c in free.contacts}.values():
+            closed, force = closed_points(contact), np.zeros_like(u)
+            contact.add_force(force)
+            before = self._before.get(id(contact))
+            if before is not None and self._comm.allreduce(int((closed & ~before[0]).any())):
+                out += force - before[1]
+            self._before[id(contact)] = closed, force
         return out
 
     def lets_go(self, u: Floats) -> str:
@@ -330,8 +347,8 @@ class Stabilisation(Term):
     def flown_off(self, u: Floats) -> tuple[FreeBody, float] | None:
         """A body in a flow that nothing can stop any more, and how far it has come; collective.
 
-        None of its points has anything of a master below it, and it has come farther than the whole
-        mesh is large.
+        None of its points has anything of a master below it, and it has come farther than to where
+        it could meet one, see `farthest_way`.
 
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
@@ -342,7 +359,9 @@ class Stabilisation(Term):
             below = any([bool(c.located().any()) for c in free.contacts])
             every = self._comm.allgather((float(way), below))
             farthest = max(one for one, _ in every)
-            if farthest > self._extent and not any(here for _, here in every):
+            if any(here for _, here in every):
+                continue
+            if farthest > farthest_way(free, self._begun):
                 return free, farthest
         return None
 

@@ -1,0 +1,54 @@
+"""How far a free body can come and still meet something."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from anisocontact.base.array_types import Floats, Locals
+from anisocontact.contact import Contact
+from anisocontact.solver.terms.free_body import FreeBody
+
+#: Sizes of a body that it may come beyond what it could reach when it began to move.
+BEYOND = 2.0
+
+
+def farthest_way(free: FreeBody, begun: Floats) -> float:
+    """Way beyond which a body that has nothing of a master below it meets none, length; collective.
+
+    That is twice its size and how far it is from the most distant of what it can touch.
+
+    Args:
+        free: The body.
+        begun: Displacement of the local nodes when it began to move, (nodes, 3), length.
+    """
+    comm = free.contacts[0].space.mesh.comm
+    x = free.contacts[0].space.tabulate_dof_coordinates()
+    low, high = _box(x[free.body.nodes], comm)
+    own = _box((x + begun)[free.nodes], comm)
+    ways = [
+        _distance(own, _box((x + begun)[_others(contact, side)], comm))
+        for contact, side in zip(free.contacts, free.sides, strict=True)
+        if contact.of_two_groups  # a surface is below it wherever it is
+    ]
+    return BEYOND * float(np.linalg.norm(high - low)) + max(ways, default=0.0)
+
+
+def _others(contact: Contact, side: float) -> Locals:
+    """Local nodes of what a body touches in a contact of two groups."""
+    slave, master = contact.nodes_of_groups
+    return master if side > 0.0 else slave
+
+
+def _box(places: Floats, comm: Any) -> tuple[Floats, Floats]:
+    """Lowest and highest corner of a box around places of all ranks, (3,) each."""
+    lowest = comm.allgather(places.min(axis=0, initial=np.inf))
+    highest = comm.allgather(places.max(axis=0, initial=-np.inf))
+    return np.min(lowest, axis=0), np.max(highest, axis=0)
+
+
+def _distance(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> float:
+    """Distance of two boxes, length."""
+    apart = np.maximum(one[0] - other[1], other[0] - one[1])
+    return float(np.linalg.norm(np.maximum(apart, 0.0)))
