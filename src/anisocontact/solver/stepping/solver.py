@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from typing import NoReturn
 
 import numpy as np
 
@@ -13,21 +12,15 @@ from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
-from anisocontact.bulk.material_warnings import STRESSED
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
+from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
-from anisocontact.solver.stepping.overload import (
-    Overload,
-    exhausted,
-    past_holding,
-    reason_of,
-    too_much_load,
-)
+from anisocontact.solver.stepping.overload import past_holding, too_much_load
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
@@ -112,6 +105,7 @@ class Solver:
         self._cut_faces = CutFaceWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
+        self._failures = Failures(problem, self._doubtful)
         self._made_of = described_run(problem, self.steps)
 
     def run(
@@ -313,8 +307,9 @@ class Solver:
         if result.culprits:
             self.place.lost = outcome
         if outcome.final or not control.cut():
-            self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
-        more = self._hint(step, cuts)
+            last = f"{cuts} cuts, the last part was {tried:.2g}" if cuts else ""
+            raise self._failures.stopped(step, self.place, outcome, last)
+        more = self._failures.hint(step, self.place, cuts)
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
@@ -329,36 +324,6 @@ class Solver:
                     culprits=outcome.culprits[:NAMED],
                 )
             )
-
-    def _hint(self, step: Step, cuts: int) -> str:
-        """What is told with a cut: which bodies a step leaves free, then what friction holds."""
-        if cuts:
-            return "; ".join(one.text for one in self._overloads(step))
-        begins = self.place.before is None
-        return "; ".join(self.problem.stabilisation.notes) if begins else ""
-
-    def _overloads(self, step: Step) -> list[Overload]:
-        """Which loads friction cannot hold at the end of the increment, or of the step."""
-        end, now = self.place.control.increment / step.increments, self.place.reached(step)
-        found = too_much_load(self.problem, end, now)
-        return found or exhausted(self.problem, now)
-
-    def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
-        """Say why an increment has no solution."""
-        outcome = self.place.lost or outcome
-        increment, culprits = self.place.control.increment, outcome.culprits
-        found = self._overloads(step)
-        reason = reason_of(outcome.result.reason, outcome.grave, found)
-        if outcome.result.reason not in reason:
-            culprits = ()
-        points = np.array([c.position for c in culprits if c.kind == "law"])
-        text = f"{tried} of the increment" if tried else ""
-        inverted = any(c.kind == "inverted" for c in outcome.culprits)
-        causes = [line for line in self._doubtful if inverted and STRESSED in line]
-        text = "; ".join(part for part in (text, outcome.hint, *causes) if part)
-        stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
-        stop.failed = outcome.failed
-        raise stop
 
     def _report(self, iteration: int, residual: float) -> None:
         self._watch.note(residual)

@@ -6,17 +6,16 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, override
 
-import numpy as np
-
-from anisocontact.base.array_types import Flags, Floats, Ints
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
-from anisocontact.bulk import LinearBulk, Material
+from anisocontact.bulk import Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.mesh.at_rest import check_at_rest
 from anisocontact.solver.system.accepted import AcceptedState
+from anisocontact.solver.system.composed import ComposedSystem
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
 from anisocontact.solver.system.coupled import CoupledTangent
@@ -26,7 +25,6 @@ from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.parts import Connections, make_parts
 from anisocontact.solver.system.reduction import Reduction
-from anisocontact.solver.system.reported import ReportedSystem
 from anisocontact.solver.system.restart_state import BEGUN, RestartState
 from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
@@ -41,7 +39,7 @@ from anisocontact.solver.terms.tied_faces import Tie
 
 
 @typed
-class Problem(ReportedSystem):
+class Problem(ComposedSystem):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
@@ -128,52 +126,9 @@ class Problem(ReportedSystem):
         return self._bodies.u
 
     @property
-    def unknowns(self) -> int:
-        """Number of unknowns over all ranks."""
-        return int(self._accepted.x.getSize())
-
-    @property
-    def solved_for(self) -> int:
-        """Number of unknowns over all ranks that do not follow from those of rigid bodies."""
-        local = 0 if self.rigid.faces is None else len(self.rigid.faces.dependents)
-        return self.unknowns - int(self.comm.allreduce(local))
-
-    @property
-    def comm(self) -> Any:
-        """Communicator of the mesh."""
-        return self.model.mesh.comm
-
-    @property
-    def linear(self) -> bool:
-        """Whether all bodies are linear."""
-        return isinstance(self.bulk, LinearBulk)
-
-    @property
     def coupled_tangent(self) -> CoupledTangent | None:
         """Couplings between bodies in the tangent; None where there cannot be any."""
         return self._tangent.coupled
-
-    def constrained(self) -> Ints:
-        """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
-        of_bodies = self.assembly.prescribed_of_bodies()
-        found = [self.supports.unknowns, self.constraints.dependents(), of_bodies]
-        return np.unique(np.concatenate(found)).astype(np.int64)
-
-    @property
-    def holding(self) -> list[str]:
-        """Names in `reactions` of what holds the bodies for the whole run."""
-        return [*self.guides.groups, *self.attached.names]
-
-    @property
-    def deformable(self) -> list[str]:
-        """Names of the bodies that have a stiffness: not all of their nodes follow rigid ones."""
-        rigid = [face.whole for face in self.rigid.faces.faces] if self.rigid.faces else []
-        return [name for name in self.model.body_names() if name not in rigid]
-
-    @property
-    def coupled(self) -> list[str]:
-        """Facet groups that follow rigid bodies."""
-        return [face.group for faces in self.rigid.coupled.values() for face in faces]
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""

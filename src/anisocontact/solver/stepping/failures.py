@@ -1,0 +1,69 @@
+"""Why a part of an increment has no solution, as it is told with a cut and at the end of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from anisocontact.bulk.material_warnings import STRESSED
+from anisocontact.solver.stepping.attempts import Outcome
+from anisocontact.solver.stepping.convergence_diagnostics import NAMED
+from anisocontact.solver.stepping.overload import Overload, exhausted, reason_of, too_much_load
+from anisocontact.solver.stepping.report import StoppedError
+from anisocontact.solver.stepping.run_position import RunPosition
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.step import Step
+
+
+class Failures:
+    """What is told of parts that do not converge.
+
+    Args:
+        problem: The problem, in the last accepted state whenever something is asked.
+        doubtful: What the steps ask for that is doubtful, a line each.
+    """
+
+    def __init__(self, problem: Problem, doubtful: Sequence[str]) -> None:
+        self._problem, self._doubtful = problem, list(doubtful)
+
+    def hint(self, step: Step, place: RunPosition, cuts: int) -> str:
+        """What is told with a cut: which bodies a step leaves free, then what friction holds.
+
+        Args:
+            step: The step.
+            place: Where in it the part failed.
+            cuts: How often the increment has been cut before.
+        """
+        if cuts:
+            return "; ".join(one.text for one in self._overloads(step, place))
+        return "; ".join(self._problem.stabilisation.notes) if place.before is None else ""
+
+    def stopped(self, step: Step, place: RunPosition, outcome: Outcome, tried: str) -> StoppedError:
+        """Say why an increment has no solution.
+
+        Args:
+            step: The step.
+            place: Where in it the increment failed.
+            outcome: What came of the last part.
+            tried: How small the parts were; empty if none was cut.
+        """
+        outcome = place.lost or outcome
+        culprits, found = outcome.culprits, self._overloads(step, place)
+        reason = reason_of(outcome.result.reason, outcome.grave, found)
+        if outcome.result.reason not in reason:
+            culprits = ()
+        points = np.array([c.position for c in culprits if c.kind == "law"])
+        text = f"{tried} of the increment" if tried else ""
+        inverted = any(c.kind == "inverted" for c in outcome.culprits)
+        causes = [line for line in self._doubtful if inverted and STRESSED in line]
+        text = "; ".join(part for part in (text, outcome.hint, *causes) if part)
+        increment = place.control.increment
+        stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
+        stop.failed = outcome.failed
+        return stop
+
+    def _overloads(self, step: Step, place: RunPosition) -> list[Overload]:
+        """Which loads friction cannot hold at the end of the increment, or of the step."""
+        end, now = place.control.increment / step.increments, place.reached(step)
+        return too_much_load(self._problem, end, now) or exhausted(self._problem, now)
