@@ -58,7 +58,7 @@ clang: setup ## the core and the programs of tests/cpp by clang++, where that is
 	$(IN_VENV) cmake -S . -B build/clang -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DANISOCONTACT_WERROR=ON \
 	  -DANISOCONTACT_CPP_TESTS=ON -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING && \
 	$(IN_VENV) cmake --build build/clang && \
-	$(IN_VENV) ctest --test-dir build/clang --parallel --output-on-failure -E no_allocation
+	$(IN_VENV) ctest --test-dir build/clang --parallel --output-on-failure
 
 mutants: setup ## change the core in one place at a time; some test has to notice each
 	@$(IN_VENV) python tools/mutants.py

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -54,8 +55,14 @@ def _monomials(topology: str, xi: np.ndarray, d: tuple[int, int] = (0, 0)) -> np
 
 def shape(topology: str, xi: np.ndarray, d: tuple[int, int] = (0, 0)) -> np.ndarray:
     """Shape functions by interpolation of monomials, written independently of the core."""
+    return np.asarray(_monomials(topology, xi, d) @ _interpolation(topology))
+
+
+@cache
+def _interpolation(topology: str) -> np.ndarray:
+    """Coefficients of the monomials in the shape functions."""
     vandermonde = np.array([_monomials(topology, np.array(n, float)) for n in NODES[topology]])
-    return np.asarray(_monomials(topology, xi, d) @ np.linalg.inv(vandermonde))
+    return np.linalg.inv(vandermonde)
 
 
 def project(topology: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -46,11 +46,14 @@ def grid(sample: Any, n: int = 250) -> tuple[Floats, Floats]:
     return mesh, np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
-def compass(sample: Any, x: Floats, xi: Floats, step: Floats) -> Floats:
-    """Distances after a search along the coordinates that needs nothing but positions."""
+def compass(sample: Any, x: Floats, xi: Floats, step: Floats, rounds: int) -> Floats:
+    """Distances after a search along the coordinates that needs nothing but positions.
+
+    Coordinates and steps go on from what is given, and are left where the search ends.
+    """
     lower, upper = np.transpose(sample.whole)
     best = np.linalg.norm(x - sample.position(xi), axis=1)
-    for _ in range(60):
+    for _ in range(rounds):
         for k in range(2):
             better = np.zeros(len(x), bool)
             for sign in (1.0, -1.0):
@@ -67,14 +70,13 @@ def compass(sample: Any, x: Floats, xi: Floats, step: Floats) -> Floats:
 
 
 def brute_force(sample: Any, x: Floats, starts: int = 5) -> Floats:
-    """Distance to the surface: the nearest of a dense grid of points, each then improved."""
+    """Distance to the surface: of the nearest of a dense grid the best one, improved to the end."""
     mesh, spacing = grid(sample)
     _, near = cKDTree(sample.position(mesh)).query(x, starts)
-    distances = [
-        compass(sample, x, mesh[near[:, k]].copy(), spacing[near[:, k]].copy())
-        for k in range(starts)
-    ]
-    return np.min(distances, axis=0)
+    xi, step = mesh[near], spacing[near]
+    first = [compass(sample, x, xi[:, k], step[:, k], 12) for k in range(starts)]
+    best = np.arange(len(x)), np.argmin(first, axis=0)
+    return compass(sample, x, xi[best], step[best], 60)
 
 
 def check_against_brute_force(sample: Any, n: int, seed: int) -> None:

@@ -1,9 +1,4 @@
-"""The update of a point takes no memory, whatever the sliding rule.
-
-Requirement: no allocation in the loop over points. `tests/cpp/no_allocation.cpp` replaces malloc by
-one that counts, which works with glibc alone, and walks through open, stick and slip with every
-rule on four surfaces, with and without tangent. It also fails where its counter does not count.
-"""
+"""The update of a point takes no memory, whatever the sliding rule."""
 
 from __future__ import annotations
 
@@ -17,26 +12,48 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-SOURCE = ROOT / "tests/cpp/no_allocation.cpp"
+#: glibc's own allocator under a counter; operator new and Eigen end up here, too.
+COUNTER = """
+#include <stddef.h>
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void* __libc_memalign(size_t, size_t);
+static size_t taken = 0;
+size_t allocations(void) { return taken; }
+void* malloc(size_t n) { return ++taken, __libc_malloc(n); }
+void* calloc(size_t n, size_t m) { return ++taken, __libc_calloc(n, m); }
+void* realloc(void* p, size_t n) { return ++taken, __libc_realloc(p, n); }
+void* aligned_alloc(size_t a, size_t n) { return ++taken, __libc_memalign(a, n); }
+"""
 
 
-def eigen():
-    """Headers of the cmeel-eigen package, or those of the system."""
-    folders = [Path(p, "cmeel.prefix/include/eigen3") for p in sys.path]
-    found = [p for p in (*folders, Path("/usr/include/eigen3")) if (p / "Eigen/Core").is_file()]
-    assert found, "Eigen's headers: pip install cmeel-eigen"
-    return found[0]
-
-
-@pytest.mark.ci
-@pytest.mark.slow
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="counts glibc's malloc")
 def test_no_allocation_in_the_hot_path(tmp_path):
-    compiler = os.environ.get("CXX", "").split() or [shutil.which("c++") or "g++"]
-    program = tmp_path / "no_allocation"
-    command = [*compiler, "-std=c++20", "-O0", f"-I{ROOT / 'cpp/include'}", f"-isystem{eigen()}"]
-    sources = [str(SOURCE), *map(str, (ROOT / "cpp/src").glob("*.cpp"))]
-    subprocess.run([*command, *sources, "-o", str(program), "-pthread"], check=True)
-    r = subprocess.run([str(program)], capture_output=True, text=True, check=False)
-    assert r.returncode == 0, r.stdout
-    assert r.stdout == "0 allocations in the hot path\n"
+    """Twice the points allocate no more, with every rule on four surfaces, with tangent or not.
+
+    Requirement: no allocation in the loop over points, be they open, stuck or slipping. The core
+    is the one that is used everywhere else. Tolerance: one allocation for a hundred points, which
+    the interpreter may make meanwhile; a point that allocates does so once at least. The last line
+    is that of arrays that are made to be counted.
+    """
+    compiler = os.environ.get("CC", "").split() or [shutil.which("cc") or "gcc"]
+    source, library = tmp_path / "counter.c", tmp_path / "counter.so"
+    source.write_text(COUNTER)
+    command = [*compiler, "-shared", "-fPIC", "-fno-builtin", "-O1", str(source)]
+    subprocess.run([*command, "-o", str(library)], check=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.verification.laws.allocations"],
+        cwd=ROOT,
+        env=os.environ | {"LD_PRELOAD": str(library), "PYTHONPATH": str(ROOT / "src")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    *updates, counter = [line.split() for line in done.stdout.splitlines()]
+    assert float(counter[2]) >= 100.0, "the counter does not count"
+    assert len(updates) > 4 * 2 * 5
+    for shape, rule, each, *seen in updates:
+        assert float(each) < 0.01, f"{shape}, {rule}: {each} allocations a point"
+        assert min(map(int, seen)) > 100, f"{shape}, {rule}: {seen} open, stuck and slid"
