@@ -104,7 +104,7 @@ def _in_python() -> Made:
 
 
 def _second_order() -> Made:
-    model = _bodies("hexahedron", 2)
+    model = _bodies("hexahedron", 2, cells=((3, 2), (4, 4)))
     return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), mortar=False)])
 
 
@@ -141,7 +141,7 @@ def _mortar() -> Made:
 
 
 def _mortar_second_order() -> Made:
-    model = _bodies("tetrahedron", 2)
+    model = _bodies("tetrahedron", 2, cells=((2, 2), (4, 3)))
     return _dragged(model, [Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)])
 
 

@@ -19,9 +19,9 @@ from anisocontact.surfaces import make_surface
 def _flat(master: str, law: str, tilt: float) -> tuple[Problem, Rotation]:
     """A flat free block on a plane or a plate, all of it turned about x."""
     turn = Rotation.from_rotvec([np.radians(tilt), 0.0, 0.0])
-    boxes = {"block": BoxSpec((0, 0, 0), (1, 1, 0.25), (2, 2, 1))}
+    boxes = {"block": BoxSpec((0, 0, 0), (1, 1, 0.25), (1, 1, 1))}
     if master == "plate":
-        boxes["base"] = BoxSpec((-0.7, -0.7, -0.5), (2.4, 2.4, 0.5), (5, 5, 1))
+        boxes["base"] = BoxSpec((-0.7, -0.7, -0.5), (2.4, 2.4, 0.5), (3, 3, 1))
     model = build_box(boxes)
     model.mesh.geometry.x[:] = turn.apply(model.mesh.geometry.x)
     if master == "plate":

@@ -71,12 +71,12 @@ def _own_body(n: int) -> np.ndarray:
     contact = Contact(model, "pad.bottom", mixed.PLATE, mixed.law(), mortar=False)
     ends = (PRESS_AND_DRAG[3], PRESS_AND_DRAG[-1])
     steps = [
-        Step(str(i), 4, {"pad.top": dict(zip("xyz", way, strict=True))})
+        Step(str(i), 2, {"pad.top": dict(zip("xyz", way, strict=True))})
         for i, way in enumerate(ends)
     ]
     forces = []
     for accepted in Solver(Problem(model, {"pad": rubber}, [contact]), steps).run():
-        if accepted.increment == 4 and accepted.done == 1.0:
+        if accepted.increment == 2 and accepted.done == 1.0:
             forces.append(contact.resultant()[0])
     return np.array(forces)
 
@@ -93,8 +93,8 @@ def test_taylor_hood_is_our_own_incompressible_body() -> None:
     differences = []
     for n in (2, 4):
         g = pad(n, "linear", 2, bulk=np.inf)
-        forces = Held(g, [on_plate(g)]).go(PRESS_AND_DRAG)
-        differences.append(off(forces[[3, -1]], _own_body(n)))
+        forces = Held(g, [on_plate(g)]).go(PRESS_AND_DRAG[1::2])
+        differences.append(off(forces[[1, -1]], _own_body(n)))
     assert differences[1] < 0.5 * differences[0]
     assert differences[1] < 0.005
 

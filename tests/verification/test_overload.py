@@ -42,8 +42,8 @@ def _problem(post: bool, swapped: bool = False) -> Problem:
         post: Whether there is one.
         swapped: Whether the free block is the master, at points.
     """
-    block = make_shape("rectangle", origin=(-0.5, 0), size=(1, 0.5), cells=(4, 2))
-    base = make_shape("rectangle", origin=(-2, -1), size=(4, 1), cells=(8, 2))
+    block = make_shape("rectangle", origin=(-0.5, 0), size=(1, 0.5), cells=(2, 1))
+    base = make_shape("rectangle", origin=(-2, -1), size=(4, 1), cells=(5, 1))
     bodies = [Body("block", block), Body("base", base)]
     model = build_mesh(bodies, idealisation=PlaneStrain())
     laws = NormalLaw(penalty=1e4), Adhesion(stiffness=1e4)
