@@ -178,8 +178,8 @@ def test_flat_master_of_any_facets(
     down = {"x": 0.0, "y": 0.0, "z": -0.01}
     steps = [
         Step("press", 1, {**held, "block.top": down}),
-        Step("slide", 8, {"block.top": {"x": 0.4, "y": 0.1}}),
-        Step("turn", 8, {"block.top": {"x": -0.45, "y": -0.3}}),
+        Step("slide", 4, {"block.top": {"x": 0.4, "y": 0.1}}),
+        Step("turn", 4, {"block.top": {"x": -0.45, "y": -0.3}}),
     ]
     forces = []
     for base in bases:

@@ -108,7 +108,7 @@ def test_refit_after_large_deformation(meshes: SimpleNamespace, topology: str) -
         points = points + 0.1 * step * rng.normal(size=points.shape)
         surface.update(points)
         fresh = mesh.moved(points).surface()
-        at = near_and_far(mesh.moved(points), 1000, step)
+        at = near_and_far(mesh.moved(points), 300, step)
         a, b = surface.project(at), fresh.project(at)
         d, e = (np.linalg.norm(at - p.position, axis=1) for p in (a, b))
         assert np.abs(d - e).max() <= CURVED * np.abs(points).max()
