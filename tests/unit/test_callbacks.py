@@ -106,7 +106,7 @@ def quantity(tmp_path, unpictured, capsys, monkeypatch):
     ],
 )
 def test_a_quantity_that_is_none(quantity, at, wrong):
-    """Requirement: one line with its name, no internal error; answers are looked at in one place."""
+    """Requirement: one line with its name, no internal error; one place looks at answers."""
     answer, said = NONE.get(wrong, (np.zeros((1, 1, 1)), "an array of shape (1, 1, 1) returned"))
     if wrong == "fails":
         code, (line,) = quantity(at, lambda of: _fails())
