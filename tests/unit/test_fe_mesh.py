@@ -242,7 +242,7 @@ def test_damaged_files_are_one_line(gmsh, tmp_path, version, binary):
     data = written(gmsh, tmp_path / "a.msh", version=version, binary=binary).read_bytes()
     rng = np.random.default_rng(5)
     refused = 0
-    for trial in range(200):
+    for trial in range(100):
         damaged = bytearray(data)
         if trial % 2:
             del damaged[rng.integers(len(data)) :]
@@ -257,7 +257,7 @@ def test_damaged_files_are_one_line(gmsh, tmp_path, version, binary):
             refused += 1
             assert "\n" not in str(error)
             assert error.field == "mesh.file"
-    assert refused > 100
+    assert refused > 50
 
 
 @pytest.mark.parametrize("text", ["", "not a mesh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n"])

@@ -1,5 +1,7 @@
 """What must not matter: where the problem lies in space, and its units."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -28,6 +30,12 @@ def resultants(fe, move, interface, length=1.0, stress=1.0, cell="hexahedron"):
     return np.array(forces), block.problem.u.x.array.reshape(-1, 3).copy(), statuses
 
 
+@cache
+def still(fe, cell="hexahedron", **law):
+    """The same where it is, in its own units: what others are compared with."""
+    return resultants(fe, Rotation.identity(), fe.interface(angle=0.5, **law), cell=cell)
+
+
 @pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("coefficients", [(0.3, 0.1), (0.2, 0.2)], ids=["marks", "isotropic"])
@@ -38,8 +46,7 @@ def test_rotation(fe, cell, seed, coefficients):
     forces; the condition of the system (1e4) separates 1e-9 from it.
     """
     law = {"coefficients": coefficients, "angle": 0.5}
-    still = Rotation.identity()
-    forces, u, status = resultants(fe, still, fe.interface(**law), cell=cell)
+    forces, u, status = still(fe, cell=cell, coefficients=coefficients)
     turn = Rotation.random(random_state=seed)
     turned_plane = fe.interface(
         **law, normal=turn.apply([0.0, 0.0, 1.0]), vector=turn.apply([1.0, 0.0, 0.0])
@@ -59,11 +66,10 @@ def test_units(fe, length, stress):
     Requirement: 1e-9. Source: every tolerance is relative to a quantity of the problem.
     Tolerance: as for the rotation.
     """
-    still = Rotation.identity()
-    forces, u, status = resultants(fe, still, fe.interface(angle=0.5))
+    forces, u, status = still(fe)
     scale = stress / length
     law = fe.interface(angle=0.5, stiffness=(4e3 * scale, 1e3 * scale), penalty=1e4 * scale)
-    forces_s, u_s, status_s = resultants(fe, still, law, length, stress)
+    forces_s, u_s, status_s = resultants(fe, Rotation.identity(), law, length, stress)
     unit = stress * length**2
     assert np.abs(forces_s / unit - forces).max() < 1e-9 * np.abs(forces).max()
     assert np.abs(u_s / length - u).max() < 1e-9 * np.abs(u).max()
