@@ -304,7 +304,14 @@ class Contact(ContactPair, OneHistory):
         return float(np.cbrt(moment / total)) if total > 0.0 else 0.0
 
     def extreme(self, values: Floats) -> float:
-        """Largest of some numbers at points, over all ranks; 0 without points."""
+        """Largest of some numbers at points, over all ranks.
+
+        Args:
+            values: A number for each of some points of this rank, (n,).
+
+        Returns:
+            The largest; 0 without points, and where all are less.
+        """
         return float(max(self._comm.allgather(float(np.max(values, initial=0.0)))))
 
     def peak(self, values: Floats) -> float:
@@ -312,6 +319,12 @@ class Contact(ContactPair, OneHistory):
 
         Nodes of a mortar of which the master covers next to nothing do not count: see
         `SlaveNodes.peaks`.
+
+        Args:
+            values: A number for each slave point of this rank, (n,).
+
+        Returns:
+            The largest; 0 without points, and where all are less.
         """
         return self.extreme(values[self.counted()])
 

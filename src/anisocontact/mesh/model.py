@@ -293,6 +293,9 @@ class Model:
 
         Args:
             name: "body.group".
+
+        Returns:
+            Whether no facet of the boundary is left out, the same on all ranks.
         """
         topology = self.mesh.topology
         dim = topology.dim
@@ -335,10 +338,13 @@ class Model:
         return int(self.mesh.comm.allreduce(len(self.owned_facets(name))))
 
     def owned_facets(self, name: str) -> Locals:
-        """Local facets of a group that this rank owns, (facets,).
+        """Local facets of a group that this rank owns.
 
         Args:
             name: "body.group".
+
+        Returns:
+            Their local numbers, (facets,).
 
         Raises:
             InputError: No such group.

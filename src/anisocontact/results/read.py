@@ -134,6 +134,9 @@ class Results:
 
         Args:
             index: Which of `times`, the last one if not given.
+
+        Returns:
+            Points, cells, and arrays at both by name.
         """
         return self._data_set("fields.pvd", index)
 

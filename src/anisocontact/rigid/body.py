@@ -163,7 +163,14 @@ class RigidBody(OneHistory):
         self.trial = self.accepted
 
     def farthest(self, points: Floats) -> float:
-        """Farthest that the last motion can have carried one of the points, (n, 3), length."""
+        """Farthest that the last motion can have carried one of the points.
+
+        Args:
+            points: Points of the body in its last accepted position, (n, 3), length.
+
+        Returns:
+            An upper bound of the distance, length.
+        """
         shift = self.trial.translation - self.accepted.translation
         turn = np.linalg.norm(self.trial.rotation - self.accepted.rotation, ord=2)
         lever = np.linalg.norm(points - self.position, axis=1).max(initial=0.0)

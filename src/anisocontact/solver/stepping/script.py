@@ -293,9 +293,24 @@ class ContactProblem:
         return self.system.new_tangent()
 
     def evaluate(self, x: Vec) -> Floats:
-        """Residual of the unknowns this rank owns, see `ScriptSystem.evaluate`."""
+        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
+
+        Args:
+            x: All unknowns, in their units.
+
+        Returns:
+            Residual, force for displacements.
+        """
         return self.system.evaluate(x)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
-        """Write d residual / d x into a matrix of `new_tangent`, see `ScriptSystem.tangent`."""
+        """Write d residual / d x into a matrix of `new_tangent`.
+
+        Args:
+            x: All unknowns, see `evaluate`.
+            out: The matrix.
+
+        Returns:
+            Whether entries were added to its pattern.
+        """
         return self.system.tangent(x, out)

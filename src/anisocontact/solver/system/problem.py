@@ -139,7 +139,11 @@ class Problem(ComposedSystem):
         return self._tangent.new_matrix()
 
     def predict_contact(self, steps: Sequence[Step]) -> None:
-        """Have places in matrices of `new_tangent` for what contact will need in these steps."""
+        """Have places in matrices of `new_tangent` for what contact will need.
+
+        Args:
+            steps: The steps to come, in order.
+        """
         self._tangent.predict_contact(steps)
 
     def begin(self, step: Step, again: bool = False) -> None:
@@ -159,13 +163,20 @@ class Problem(ComposedSystem):
         self._tangent.begin(step)
 
     def end_at(self, factor: float) -> None:
-        """End the step that has begun at a fraction of it: prescribed values stay as they are."""
+        """End the step that has begun at a fraction of it: prescribed values stay as they are.
+
+        Args:
+            factor: The fraction, 0 to 1.
+        """
         self.supports.stop()
         self.guides.stop()
         self.assembly.terms.end_at(factor)
 
     def check(self, steps: Sequence[Step]) -> list[str]:
         """Go through all steps without solving.
+
+        Args:
+            steps: The steps, in order.
 
         Returns:
             What the steps ask for that is doubtful, a line each.
@@ -262,7 +273,11 @@ class Problem(ComposedSystem):
         self.pass_through(self._bodies.nodal)
 
     def pass_through(self, nodal: Floats) -> None:
-        """Remember a state on the way to the next accepted one, (nodes, 3), length."""
+        """Remember a state on the way to the next accepted one.
+
+        Args:
+            nodal: Displacement of the local nodes, (nodes, 3), length.
+        """
         self._contact_work.pass_through(nodal)
         self.contact_term.pass_through()
 
@@ -276,13 +291,24 @@ class Problem(ComposedSystem):
         return sides.objection(known.displacement(x))
 
     def turned(self, x: Vec) -> dict[str, BodyRotation]:
-        """How far bodies at small strain have turned in a state in equilibrium, by name."""
+        """How far bodies at small strain have turned.
+
+        Args:
+            x: All unknowns of a state in equilibrium.
+
+        Returns:
+            Turns by name of the body; none where no body is at small strain.
+        """
         if not self.rotations:
             return {}
         return self.reduction.turned(self.rotations, x, self.load_factor == 1.0)
 
     def stabilise_at(self, where: Flags) -> None:
-        """Keep bodies in reach by springs at these of the nodes alone, (nodes,)."""
+        """Keep bodies in reach by springs at some of the nodes alone.
+
+        Args:
+            where: Whether a local node may have springs, (nodes,).
+        """
         self.stabilisation.confine(where)
         self._stabilise()
 
