@@ -57,6 +57,35 @@ def test_a_coarse_slave_is_named_with_the_ratio_and_the_cure(unit, more):
     assert not coarse_slaves([Contact(model, "pin.bottom", "base.top", law=LAW, mortar=False)])
 
 
+@pytest.mark.parametrize("mortar", [False, True])
+def test_of_a_graded_slave_the_facets_below_the_master_count(mortar):
+    """Facets of 0.1 below a pin with facets of 0.1 are not coarse, however large those far off are.
+
+    Requirement: no line where the mean of all facets of the slave is more than three times as large
+    as those of the master, and a line with the size below the pin, 0.5, where that is.
+    """
+    pin = make_shape("box", origin=(-0.05, -0.05, 0.0), size=(0.2, 0.2, 0.3), cells=(2, 2, 1))
+    for near, said in ((0.1, None), (0.5, "(0.5 and 0.1)")):
+        inner = np.arange(-0.5, 0.5 + 1e-9, near)
+        planes = np.concatenate([[-20.0, -10.0], inner, [10.0, 20.0]])
+        shares = ((planes + 20.0) / 40.0).tolist()
+        n = len(planes) - 1
+        base = make_shape(
+            "box",
+            origin=(-20, -20, -1),
+            size=(40, 40, 1),
+            cells=(n, n, 1),
+            planes_x=shares,
+            planes_y=shares,
+        )
+        model = build_mesh([Body("base", base), Body("pin", pin)])
+        contact = Contact(model, "base.top", "pin.bottom", law=LAW, mortar=mortar)
+        assert contact.facet_size > 3.0 * contact.master_size
+        lines = coarse_slaves([contact])
+        assert len(lines) == (said is not None)
+        assert said is None or said in lines[0]
+
+
 def test_a_script_gets_a_warning_of_the_package():
     model = _model()
     contact = Contact(model, "base.top", "pin.bottom", law=LAW, mortar=False)

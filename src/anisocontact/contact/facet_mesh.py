@@ -102,8 +102,8 @@ def facet_corners(topology: str) -> list[int]:
     return [0, 1, 2] if topology.startswith("tri") else [0, 1, 3, 2]
 
 
-def group_area(mesh: FacetMesh, x: Floats) -> float:
-    """Area of facets from their corners, length^2.
+def facet_areas(mesh: FacetMesh, x: Floats) -> Floats:
+    """Area of each facet from its corners, (m,), length^2.
 
     Args:
         mesh: The facets.
@@ -111,7 +111,7 @@ def group_area(mesh: FacetMesh, x: Floats) -> float:
     """
     corners = x[mesh.nodes[:, facet_corners(mesh.topology)]]
     fan = np.cross(corners[:, 1:-1] - corners[:, :1], corners[:, 2:] - corners[:, :1])
-    return float(0.5 * mesh.share * np.linalg.norm(fan, axis=2).sum())
+    return np.asarray(0.5 * mesh.share * np.linalg.norm(fan, axis=2).sum(axis=1))
 
 
 class FacetShapes:

@@ -12,9 +12,10 @@ from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
-from anisocontact.contact.facet_mesh import node_positions
+from anisocontact.contact.facet_mesh import facet_areas, node_positions
 from anisocontact.contact.field_axes import OFF, distances
 from anisocontact.contact.initial import initial_overlap
+from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.interface.contact_law import AdhesionAndFriction
 
@@ -41,7 +42,7 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
-    not met. Slave nodes meet it, by its mean.
+    not met. Slave nodes meet it, by its mean. Of a graded slave the facets below the master count.
 
     Args:
         contacts: The contacts.
@@ -54,7 +55,7 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     for contact in contacts:
         if not contact.of_two_groups:
             continue
-        slave, master = contact.facet_size, contact.master_size
+        slave, master = _size_below_master(contact), contact.master_size
         if slave > ratio * master:
             at_nodes = contact.slave_points.at_nodes
             found.append(
@@ -63,6 +64,22 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
                 f"{master:.3g}), {_AT_NODES if at_nodes else _AT_POINTS}"
             )
     return found
+
+
+def _size_below_master(contact: Contact) -> float:
+    """Length of the slave facets that have the master before most nodes, of all where none has."""
+    assert isinstance(contact.master, MeshedMaster)
+    points, sides = contact.slave_points, contact.master.sides
+    found = contact.master.located(contact.state)
+    seen = points.nodes[found][points.shape[found] != 0.0]
+    covered = np.isin(sides.slave.nodes, seen).sum(axis=1)
+    comm = contact.space.mesh.comm
+    before = covered == max(comm.allgather(int(covered.max(initial=0))))
+    areas = facet_areas(sides.slave, sides.reference)
+    own = [areas.sum(), len(areas), areas[before].sum(), np.count_nonzero(before)]
+    whole, every, area, count = comm.allreduce(np.array(own))
+    power = 0.5 if contact.model.idealisation.dim == 3 else 1.0
+    return float(contact.facet_size * (area / count * every / whole) ** power)
 
 
 #: What a coarse slave does to a contact.

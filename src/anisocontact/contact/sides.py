@@ -17,9 +17,9 @@ from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetRule,
+    facet_areas,
     facet_mesh,
     facet_rule,
-    group_area,
     isoparametric,
 )
 from anisocontact.contact.facet_pairs import largest_radius, near_facets
@@ -173,7 +173,8 @@ class Sides:
         found = []
         for side in (self.slave, self.gathered.own):
             nodes = self.gathered.owned(self.gathered.local_names(side.nodes))
-            local = np.array([diagonal[nodes].mean(axis=1).sum(), group_area(side, self.reference)])
+            area = facet_areas(side, self.reference).sum()
+            local = np.array([diagonal[nodes].mean(axis=1).sum(), area])
             total, area = self.comm.allreduce(local)
             found.append(float(total / area) if total > 0.0 else np.inf)
         return found
