@@ -77,7 +77,7 @@ def test_even_shares_of_eight_nodes_are_the_force_of_the_face(
     case, said = converted(tmp_path, capsys, deck(loads))
     value = {"amplitude": "ramp", "value": FORCE} if amplitude else FORCE
     assert case["step"][0]["force"] == {"cube.top": {"z": value}}
-    assert "forces along" not in said
+    assert "shares of forces" not in said
     if amplitude:
         return
     with (tmp_path / "cube.toml").open("a") as file:
@@ -89,29 +89,25 @@ def test_even_shares_of_eight_nodes_are_the_force_of_the_face(
     assert risen == pytest.approx(FORCE * 2.0 / (YOUNG * 4.0), rel=1e-8)
 
 
-def test_shares_that_are_not_even_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """Forces that are no even traction stay where they are, and one line says what they are not."""
-    loads = f"*CLOAD\nCORNERS, 3, {FORCE / 12}\nMIDDLES, 3, {FORCE / 3}"
-    case, said = converted(tmp_path, capsys, deck(loads))
-    assert set(case["step"][0]["force"]) == {"cube.corners", "cube.middles"}
-    assert "forces along z on the nodes of 1 faces of 20-node hexahedra" in said
-
-
-def test_steps_that_load_parts_of_a_face_are_said(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("corners", "more"),
+    [
+        (FORCE / 12, ""),
+        (-FORCE / 12, f"\n*END STEP\n*STEP\n*STATIC\n*CLOAD\nCORNERS, 3, {-FORCE / 6}"),
+    ],
+    ids=["not even", "part of a face in a step"],
+)
+def test_shares_that_are_no_traction_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], corners: float, more: str
 ):
-    """A second step that changes some forces of a face alone would leave the sum of the first."""
-    loads = f"""*CLOAD
-CORNERS, 3, {-FORCE / 12}
-MIDDLES, 3, {FORCE / 3}
-*END STEP
-*STEP
-*STATIC
-*CLOAD
-CORNERS, 3, {-FORCE / 6}"""
+    """Forces that are no even traction stay in their groups, and one line says that they are none.
+
+    A second step that changes some forces of a face alone would leave the sum of the first.
+    """
+    loads = f"*CLOAD\nCORNERS, 3, {corners}\nMIDDLES, 3, {FORCE / 3}{more}"
     case, said = converted(tmp_path, capsys, deck(loads))
     assert set(case["step"][0]["force"]) == {"cube.corners", "cube.middles"}
-    assert "forces along z on the nodes of 1 faces" in said
+    assert said.count("shares of forces along z on faces of eight nodes (1 loaded)") == 1
 
 
 def test_forces_that_supports_take_up_are_left_out(

@@ -126,9 +126,10 @@ class NodalForces:
         found = [self._even(values, covered) if alike else None for _, values in given]
         if None in found:
             yield (
-                f"forces along {component} on the nodes of {len(covered)} faces of 20-node "
-                "hexahedra are no even traction there, and cells here have 27 nodes, whose shares "
-                "are others: give a pressure, a traction or the force of the face"
+                f"shares of forces along {component} on faces of eight nodes ({len(covered)} "
+                "loaded): they are no even traction, and faces have nine nodes here; the forces "
+                "are written by their groups, better give a pressure, a traction or the force of "
+                "the face"
             )
             return
         for (step, values), face in zip(given, found, strict=True):

@@ -72,8 +72,10 @@ class Materials:
             strain = {"strain": "green-lagrange"} if finite else {}
             axes = self._directions.get(orientation, {})
             elastic = {key: value for key, value in known.items() if key not in _YIELDS}
-            left = [f"material of {body}: *PLASTIC of an orthotropic one; see the model hill"]
-            return {"model": "orthotropic"} | elastic | axes | strain, left[: elastic != known]
+            left = []
+            if elastic != known:
+                left = [f"material of {body}: *PLASTIC of an orthotropic one; see the model hill"]
+            return {"model": "orthotropic"} | elastic | axes | strain, left
         if "flow_curve" in known or "yield_stress" in known:
             strain = {"strain": "logarithmic"} if finite else {}
             return {"model": "plastic"} | known | strain, []

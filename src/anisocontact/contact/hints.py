@@ -42,7 +42,8 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
-    not met. Slave nodes meet it, by its mean. Of a graded slave the facets below the master count.
+    not met. Slave nodes meet it, by its mean. Of a graded slave the facets that face the master
+    count. Collective.
 
     Args:
         contacts: The contacts.
@@ -55,7 +56,7 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     for contact in contacts:
         if not contact.of_two_groups:
             continue
-        slave, master = _size_below_master(contact), contact.master_size
+        slave, master = _size_facing_master(contact), contact.master_size
         if slave > ratio * master:
             at_nodes = contact.slave_points.at_nodes
             found.append(
@@ -66,8 +67,8 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     return found
 
 
-def _size_below_master(contact: Contact) -> float:
-    """Length of the slave facets that have the master before most nodes, of all where none has."""
+def _size_facing_master(contact: Contact) -> float:
+    """Length of the slave facets most of whose nodes face the master, of all where none does."""
     assert isinstance(contact.master, MeshedMaster)
     points, sides = contact.slave_points, contact.master.sides
     found = contact.master.located(contact.state)

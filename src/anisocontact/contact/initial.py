@@ -181,7 +181,7 @@ def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal:
     own = all(group.partition(".")[0] == body for group in contact.master.groups)
     if not (own and contact.master.groups) or comm.allreduce(int((located & ~behind).sum())):
         return
-    if not contact.master.on_piece_of_slave():
+    if not contact.master.connected_to_slave():
         return
     _refuse(
         contact,

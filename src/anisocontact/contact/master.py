@@ -83,7 +83,7 @@ class Master(Protocol):
     reach: float = np.inf
     retraceable: bool = True
 
-    def on_piece_of_slave(self) -> bool:
+    def connected_to_slave(self) -> bool:
         """Whether a connected part of the mesh has facets of both sides; collective."""
         return False
 

@@ -78,7 +78,7 @@ class MasterSurface:
             self.facets = all_of_it if beyond is None else beyond.whole(all_of_it)
             self.numbers, self._far = np.arange(len(self.facets.nodes)), RemoteNodes(space, NONE)
 
-    def on_piece_of(self, other: FacetMesh) -> bool:
+    def connected_to(self, other: FacetMesh) -> bool:
         """Whether a connected part of the mesh has these facets and others; collective.
 
         Args:

@@ -45,9 +45,9 @@ class MeshedMaster(Master):
         self._rests = False
         self.take(law, law)
 
-    def on_piece_of_slave(self) -> bool:
+    def connected_to_slave(self) -> bool:
         """Whether a connected part of the mesh has facets of both sides; collective."""
-        return self._gathered.on_piece_of(self.sides.slave)
+        return self._gathered.connected_to(self.sides.slave)
 
     @property
     def facets(self) -> Locals:
