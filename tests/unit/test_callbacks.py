@@ -119,7 +119,15 @@ def test_a_quantity_that_is_none(quantity, at, wrong):
 
 
 @pytest.mark.parametrize("at", ["slave point", "node", "cell", "patch"])
-@pytest.mark.parametrize("of", [lambda n: np.zeros(n + 1), lambda n: np.zeros((n, 0)), lambda n: 0])
+@pytest.mark.parametrize(
+    "of",
+    [
+        lambda n: np.zeros(n + 1),
+        lambda n: np.zeros((n, 0)),
+        lambda n: np.zeros((n, 1, 1)),
+        lambda n: 0,
+    ],
+)
 def test_a_quantity_of_another_number_of_rows(quantity, at, of):
     """Requirement: rows that are not those of the file are refused; it could not be read."""
 
