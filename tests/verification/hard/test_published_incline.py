@@ -28,6 +28,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import load
 from anisocontact.case.build import build
+from anisocontact.solver.stepping.overload import Overload
 
 FIRST, SECOND = 0.3, 0.1
 
@@ -127,10 +128,10 @@ def test_a_limit_at_the_end_of_an_increment(
     """
     looked: list[float] = []
 
-    def beyond(problem: Any, end: float, now: float, *_: Any) -> bool:
+    def beyond(problem: Any, end: float, now: float, *_: Any) -> list[Overload]:
         looked.append(end)
         assert len(looked) < 60
-        return now > 0.39
+        return [Overload("", told=True, certain=True)] if now > 0.39 else []
 
     monkeypatch.setattr("anisocontact.solver.stepping.solver.too_much_load", beyond)
     text = incline(0, 0, nu=0.0, table=PLANE, master="table", held="")

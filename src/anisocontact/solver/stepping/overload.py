@@ -29,6 +29,8 @@ FREE = 0.99
 #: Load over the limit of friction that is too much. Below, something else may be the cause, for
 #: normals turn a little while bodies deform.
 TOO_MUCH = 1.005
+#: The same where sliding is waited for: closer to the limit corrections are lost in the last stick.
+AT_LIMIT = 0.9999
 #: Share of what friction can hold that the accepted loads have to have reached where the loads do
 #: not say what presses a body on, which changes along an increment, or loads of later ones count.
 NEARLY = 0.97
@@ -75,14 +77,14 @@ def too_much_load(
         fraction: Fraction of the step whose loads are looked at.
         now: Fraction of the step of the accepted state.
         over: Load over the limit of friction that is too much.
-        by: Contact that has to be the only one that holds the body, which may rest further on; any
-            if left out, and none that rests there.
+        by: Contact that has to be the only one that holds the body, which may rest further on, or
+            has not come near the limit; any if left out, and none of these.
     """
     bodies = driven(problem, fraction, now)
     if by is not None:
         bodies = [one for one in bodies if all(c is by for c, _ in one.contacts)]
     found = _found(problem, bodies, over)
-    return [one for one in found if one.told or (one.further and by is not None)]
+    return [one for one in found if one.told or by is not None]
 
 
 def exhausted(problem: Problem, now: float) -> list[Overload]:

@@ -20,7 +20,7 @@ from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
-from anisocontact.solver.stepping.overload import past_holding, too_much_load
+from anisocontact.solver.stepping.overload import AT_LIMIT, past_holding, too_much_load
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
@@ -35,6 +35,10 @@ from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
 from anisocontact.solver.terms.step import Step
+
+#: Smallest part, share of an increment, that is halved where friction would not hold its loads with
+#: the pressures of now, and the loads of now are far below.
+CLOSER = 0.05
 
 
 @typed
@@ -282,8 +286,14 @@ class Solver:
         events.begin(control.part, control.end)
         slides, end = events.slides(), fraction(step, control.increment, control.end)
         now = self.place.reached(step)
-        overloaded = slides and too_much_load(self.problem, end, now, 1.0, slides)
-        return bool(overloaded) and events.overload()
+        found = too_much_load(self.problem, end, now, AT_LIMIT, slides) if slides else []
+        if any(one.told or one.further for one in found):
+            return events.overload()
+        # pressures may move until then, and so may the limit: it is come closer to first
+        far = bool(found) and control.part > max(CLOSER, self.limits.smallest)
+        if far:
+            control.bound(0.5 * control.part)
+        return far
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
         """Solve the next part from the state that is predicted for its end."""
