@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -92,6 +93,7 @@ def run(
     """
     text = built.file.path.read_text(encoding="utf-8")
     facts = {"case": text, "files": _read_once(built)}
+    doubts = built.doubts()
     if checkpoint is not None:
         solver = built.solver
         solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
@@ -100,9 +102,11 @@ def run(
     except WriteError as error:
         return RunOutcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
+    for doubt in doubts:
+        writer.log(f"warning: {doubt}")
     request = _StopRequest(listener)
     with on_signals(request.by_signal):
-        curable = _run_and_close(built, writer, request, facts)
+        curable = _run_and_close(built, writer, request, facts, doubts)
     summary = writer.summary
     status, message = summary["status"], summary["message"]
     goes_on = curable and (writer.folder / NAME).is_file()
@@ -124,7 +128,11 @@ class _End(NamedTuple):
 
 
 def _run_and_close(
-    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
+    built: Built,
+    writer: Writer,
+    request: _StopRequest,
+    facts: dict[str, Any],
+    doubts: Sequence[str],
 ) -> bool:
     """Run the steps and close the results, however it ends; whether the run can go on.
 
@@ -151,9 +159,9 @@ def _run_and_close(
         for line in traceback.format_exc().splitlines():
             writer.log(line)
         if lacking is None:
-            writer.close(end.status, end.message)
+            writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
             raise RunError(f"{text}; {_details(writer)}") from error
-    writer.close(end.status, end.message)
+    writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
     return end.curable
 
 

@@ -32,7 +32,7 @@ from anisocontact.results.snapshot import Observer, exact_laws, laws
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
-from anisocontact.solver.stepping.increment_warnings import missed_event
+from anisocontact.solver.stepping.increment_warnings import lasting, missed_event
 from anisocontact.solver.terms.persistent import Persistent
 
 
@@ -77,7 +77,7 @@ class Writer:
         self._steps = list(steps)
         self._options = options = options or OutputOptions()
         self._reporter, labels = reporter, labels or Labels()
-        self._kept = 0
+        self._kept, self._lasting = 0, dict[str, str]()
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
         self._checkpoints = Checkpoints(self.folder, problem.model, options.checkpoint_every)
@@ -142,6 +142,7 @@ class Writer:
         self.summary["energy"] = {n: math.nan if v is None else v for n, v in energy.items()}
         self._began -= state["summary"]["wall_time_s"]
         self._at_start = list(state["at_start"])
+        self._lasting = dict(state.get("lasting", {}))
         self._kept = state["kept"]
         self._disk.write(lambda: self._history.resume(state["history"]))
         for name, table in self._probes.items():
@@ -155,6 +156,7 @@ class Writer:
         return {
             "summary": self.summary,
             "at_start": self._at_start,
+            "lasting": self._lasting,
             "kept": self._kept,
             "history": self._history.state(),
             "probes": {name: table.history.state() for name, table in self._probes.items()},
@@ -220,6 +222,7 @@ class Writer:
         before, self.summary["time"] = self.summary["time"], accepted.time
         self._take(numbers)
         self.summary.update(worst_of_models(accepted, self.summary))
+        self._lasting = lasting(accepted) | self._lasting
         if accepted.event or accepted.missed:
             self.summary["events"].append(_event(accepted))
         self._fields.accept(accepted, before)
@@ -256,12 +259,13 @@ class Writer:
             said = f"{FAILED} is not written: {error}"
         self._disk.write_each(lambda: self._append(said))
 
-    def close(self, status: str, message: str = "") -> None:
+    def close(self, status: str, message: str = "", doubtful: Sequence[str] = ()) -> None:
         """Write the end of the run and its report.
 
         Args:
             status: "done" or "stopped".
             message: Why it stopped.
+            doubtful: What is to be said of the case and its steps, beside what happened.
         """
         self._checkpoints.rescue()
         self._fields.close(self.summary["time"])
@@ -275,7 +279,8 @@ class Writer:
             found += soft(contacts, shown, relaxed)
         missed = [event["text"] for event in self.summary["events"] if not event["happened"]]
         found = [*missed, *found]
-        self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
+        known = [*self._at_start, *self._lasting.values(), *found, *of_models(self.summary)]
+        self.summary["warnings"] = list(dict.fromkeys([*doubtful, *known]))
         self._write_summary()
         if self._options.vtkhdf:
             self._disk.write(self._write_vtkhdf)

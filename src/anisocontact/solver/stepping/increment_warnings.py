@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.report import Accepted
@@ -37,11 +37,28 @@ class IncrementWarnings:
 
     def of(self, accepted: Accepted) -> list[str]:
         """What has not been said before, with where it happened."""
-        where = f"step {accepted.step!r}, increment {accepted.increment}"
-        found = dict(_found(accepted))
+        found = _placed(accepted, _summed_up(accepted)) | lasting(accepted)
         fresh = [text for key, text in found.items() if key not in self._issued]
         self._issued |= set(found)
-        return [f"{where}: {text}" for text in fresh]
+        return fresh
+
+
+def lasting(accepted: Accepted) -> dict[str, str]:
+    """Warnings, by what they are about, of which the numbers of a run say nothing at its end.
+
+    Args:
+        accepted: An accepted increment.
+
+    Returns:
+        Where it happened and what, by a key that is the same each time.
+    """
+    return _placed(accepted, _of_contacts(accepted))
+
+
+def _placed(accepted: Accepted, found: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Warnings with where they happened."""
+    where = f"step {accepted.step!r}, increment {accepted.increment}"
+    return {key: f"{where}: {text}" for key, text in found}
 
 
 def missed_event(accepted: Accepted) -> str:
@@ -49,16 +66,11 @@ def missed_event(accepted: Accepted) -> str:
     return f"the step ends without its event, {accepted.missed}: it took all its increments"
 
 
-def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
-    """Reasons for a warning, by what they are about."""
+def _summed_up(accepted: Accepted) -> Iterator[tuple[str, str]]:
+    """Reasons for a warning, by what they are about, of which a run keeps the worst or all."""
     for name, turned in accepted.turned.items():
         if turned.angle > WARNED:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
-    for behind in accepted.behind:
-        yield f"behind {behind.body} {behind.master}", str(behind)
-    for name, count in accepted.undetermined.items():
-        points = "slave point touches" if count == 1 else "slave points touch"
-        yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
     for name, lost in accepted.past_cuts.items():
         yield f"past {name}", f"contact {name!r}: {PAST.format(lost)}"
     if accepted.imbalance.large:
@@ -70,6 +82,15 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"missed {accepted.step}", missed_event(accepted)
     if accepted.relaxed:
         yield "relaxed", RELAXED
+
+
+def _of_contacts(accepted: Accepted) -> Iterator[tuple[str, str]]:
+    """Reasons for a warning, by what they are about, that nothing else of a run keeps."""
+    for behind in accepted.behind:
+        yield f"behind {behind.body} {behind.master}", str(behind)
+    for name, count in accepted.undetermined.items():
+        points = "slave point touches" if count == 1 else "slave points touch"
+        yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
     for name, count in accepted.slivers.items():
         nodes = "slave node touches" if count == 1 else "slave nodes touch"
         yield f"slivers {name}", f"contact {name!r}: {count} {nodes} {SLIVERS}"

@@ -59,6 +59,7 @@ class Solver:
     Attributes:
         choice: The strategy and why it was taken.
         place: How far the run has come.
+        doubtful: What is hardly meant in the steps and, after an increment, in the options.
         cautions: What the steps ask for that is at the limit of a model, a line each.
 
     Raises:
@@ -91,10 +92,10 @@ class Solver:
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()
-        self._doubtful = problem.check(self.steps)
+        self.doubtful = problem.check(self.steps)
         check_events(problem, self.steps)
         turns = prescribed_turns(problem.model, problem.materials, self.steps)
-        self.cautions = [*self._doubtful, *turns]
+        self.cautions = [*self.doubtful, *turns]
         self.place = RunPosition.beginning(0, 0.0, self.limits)
         self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
         self.choice = choose(strategy, self._task)
@@ -109,7 +110,7 @@ class Solver:
         self._cut_faces = CutFaceWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
-        self._failures = Failures(problem, self._doubtful)
+        self._failures = Failures(problem, self.doubtful)
         self._made_of = described_run(problem, self.steps)
 
     def run(
@@ -138,7 +139,7 @@ class Solver:
         note = on_note or (lambda _: None)
         noted = tell_script if on_note is None else lambda text: note(f"warning: {text}")
         warn = on_warning or noted
-        for text in self._doubtful:
+        for text in self.doubtful:
             warn(text)
         self._energy.begin()
         self._predictor.begin()
@@ -203,7 +204,9 @@ class Solver:
             while self.place.step < len(self.steps):
                 step = self.steps[self.place.step]
                 for accepted in self._step(attempts, step):
-                    for text in (*self._options.unread(comm), *warnings.of(accepted)):
+                    unread = [*self._options.unread(comm)]
+                    self.doubtful += unread
+                    for text in (*unread, *warnings.of(accepted)):
                         warn(text)
                     yield accepted
                 self._go_on(step)
