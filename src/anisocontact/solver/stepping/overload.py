@@ -55,12 +55,14 @@ class Overload:
         certain: Whether nothing that presses the body otherwise by then can make it hold: a contact
             that is open yet, or prescribed motion.
         further: Whether it is not told as the body rests further on, see `SlidingMotion`.
+        pressed: Whether the loads themselves say what presses the body on.
     """
 
     text: str
     told: bool
     certain: bool
     further: bool = False
+    pressed: bool = False
 
 
 def too_much_load(
@@ -107,6 +109,7 @@ def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> li
     if not cuts:
         return []
     found = _found(problem, deformable(problem, fraction, now))
+    found = [one for one in found if one.told or one.further or one.pressed]
     if cuts > MANY:
         found += _found(problem, deformable(problem, 1.0, now), soon=True)
     return found
@@ -155,7 +158,7 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
         return None
     now = limit(points, body.motions, body.before) if touched else None
     near = now is not None and now.held * NEARLY < 1.0
-    if (soon or by_load is None) and not near:
+    if soon and not near:
         return None
     # the load says how much presses a body, and not where: enough for translations
     shifted = None if soon or by_load is None else limit(by_load, _shifts(body), body.load)
@@ -170,7 +173,8 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     contacts = [contact for contact, _ in body.contacts]
     slide = SlidingMotion(found.motion, body.centre, body.size, body.loads, contacts, grown)
     further = told and slide.rests(1.0 - found.held)
-    return Overload(text, told and not further, certain and not further, further)
+    pressed = by_load is not None
+    return Overload(text, told and not further, certain and not further, further, pressed)
 
 
 def _moves(problem: Problem) -> bool:

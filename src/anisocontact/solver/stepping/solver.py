@@ -37,8 +37,9 @@ from anisocontact.solver.terms.persistent import Arrays, Persistent, under
 from anisocontact.solver.terms.step import Step
 
 #: Smallest part, share of an increment, that is halved where friction would not hold its loads with
-#: the pressures of now, and the loads of now are far below.
-CLOSER = 0.05
+#: the pressures of now, and the loads of now are far below: where the loads say how much presses,
+#: and where it may come to press more.
+CLOSER, LESS_SURE = 0.05, 0.25
 
 
 @typed
@@ -293,7 +294,8 @@ class Solver:
         if any(one.told or one.further for one in found):
             return events.overload()
         # pressures may move until then, and so may the limit: it is come closer to first
-        far = bool(found) and control.part > max(CLOSER, self.limits.smallest)
+        closer = CLOSER if any(one.pressed for one in found) else LESS_SURE
+        far = bool(found) and control.part > max(closer, self.limits.smallest)
         if far:
             control.bound(0.5 * control.part)
         return far
