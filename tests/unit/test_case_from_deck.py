@@ -266,6 +266,19 @@ def test_a_deck_without_a_static_step(deck: Path, capsys: pytest.CaptureFixture[
     assert not target.exists()
 
 
+def test_a_deck_without_steps(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: a mesh with materials alone is written, and a line says that steps are missing,
+    which `check` would refuse. A deck with steps has no such line. Texts are compared."""
+    deck.write_text(DECK[: DECK.index("*STEP")])
+    case, lines = converted(deck, capsys)
+    assert "step" not in case
+    assert [line for line in lines if line.startswith("missing ")] == [
+        "missing   [[step]]: the deck has no *STEP; supports and loads are to be written there"
+    ]
+    deck.write_text(DECK)
+    assert not any(line.startswith("missing ") for line in converted(deck, capsys)[1])
+
+
 @pytest.mark.parametrize(
     ("option", "given"), [("", {}), (", POSITION TOLERANCE=0.2", {"tolerance": 0.2})]
 )

@@ -51,6 +51,11 @@ resultant = { glue = { body = "upper", point = [0, 0, 1.1], normal = [0, 0, 1] }
         ('master = "lower.top"', 'master = "lower.tip"', "tie[0].master: "),
         ('master = "lower.top"', 'target = "lower.top"', 'did you mean "master"?'),
         ('slave = "upper', 'tolerance = -1.0\nslave = "upper', "tie[0].tolerance: -1.0 given"),
+        (
+            "[[tie]]",
+            '[[tie]]\nslave = "lower.top"\nmaster = "upper.bottom"\n[[tie]]',
+            "error: tie: given in a circle",
+        ),
         ("[[tie]]", "[[bonded]]", 'did you mean "tie"?'),
         ("[[tie]]", "[tie]", "[[tie]]"),
         (

@@ -201,7 +201,8 @@ def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
                 problem, steps, options=given.options, limits=limits, strategy=given.strategy
             )
     except InputError as error:
-        if error.field.startswith("step "):  # a step is no part of the table of the solver
+        table, _, _ = error.field.partition(".")
+        if table and table not in type(given).model_fields:  # of a step, a tie, a spring ...
             raise
         with within("solver"):
             raise

@@ -56,5 +56,7 @@ def _case(source: Path, target: Path) -> int:
     for line in left_out:
         say(f"left out  {line}")
     say(f"written   {target}")
+    if "[[step]]" not in text.splitlines():
+        say("missing   [[step]]: the deck has no *STEP; supports and loads are to be written there")
     say(f"next      anisocontact check {target}")
     return 0

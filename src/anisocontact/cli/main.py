@@ -74,15 +74,20 @@ def _add_cases(commands: Commands) -> None:
     )
 
     convert = _command(
-        commands, "convert", "write a mesh in another format, with its bodies and facet groups"
+        commands,
+        "convert",
+        "write a mesh in another format, with bodies and facet groups, or a case file of a deck",
     )
     convert.add_argument(
-        "source", metavar="IN", help="a mesh file, a case file for its mesh, or a results folder"
+        "source",
+        metavar="IN",
+        help="a mesh file, a case file for its mesh, a results folder, or a deck .inp",
     )
     convert.add_argument(
         "target",
         metavar="OUT",
-        help="file to write: .msh of gmsh, .vtu or .vtk; .vtkhdf of a results folder",
+        help="file to write: .msh of gmsh, .vtu or .vtk; .vtkhdf of a results folder; .toml of a "
+        "deck, which is a case file",
     )
 
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
