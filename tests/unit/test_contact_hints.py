@@ -236,6 +236,23 @@ def test_check_and_run_say_it_and_say_it_again_where_nothing_touches(tmp_path, c
     assert at_start in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("angle", "told"), [(30, True), (0, False)])
+def test_who_swaps_sides_is_told_of_angles(tmp_path, capsys, angle, told):
+    """Requirement: the advice to swap sides says that angles of a texture change their signs.
+
+    Source: direction-fields.md, angles are about the normal from the master to the slave. A block
+    on a base that was swapped as advised had its lateral force the other way round.
+    """
+    field = f'{{ kind = "constant", vector = [1, 0, 0], angle_deg = {angle} }}'
+    case = tmp_path / "case.toml"
+    case.write_text(
+        PAIR.replace("= 0.3 }\n\n[[step]]", f"= [0.3, 0.1], directions = {field} }}\n\n[[step]]")
+    )
+    assert main(["check", str(case)]) == 0
+    (said,) = [line for line in capsys.readouterr().out.splitlines() if "swap slave" in line]
+    assert said.endswith("change their signs then") == told
+
+
 BLOCK = """
 [mesh.box.block]
 origin = [0, 0, {gap}]

@@ -129,7 +129,24 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
     Returns:
         A line for each of them.
     """
-    return [*coarse_slaves(contacts), *stiff_slaves(contacts)]
+    return [
+        line + _angles(contact)
+        for contact in contacts
+        for line in [*coarse_slaves([contact]), *stiff_slaves([contact])]
+    ]
+
+
+def _angles(contact: Contact) -> str:
+    """What to do with angles of a texture where the sides are swapped; empty if it has none."""
+    fields = [one.field.named[1] for one in contact.interface.carried if one.field is not None]
+    turned = any(
+        name.startswith("angle") and any(angle) for field in fields for name, angle in field.items()
+    )
+    return f"; {_MIRRORED}" if turned else ""
+
+
+#: What an angle of a direction field means on the other side.
+_MIRRORED = "angles of its directions are about the normal of the master: change their signs then"
 
 
 def on_field_axes(contacts: Sequence[Contact]) -> list[str]:
