@@ -107,7 +107,7 @@ def test_check_tells_of_the_faces(case, capsys):
         (
             '["pin.top"]',
             '["pin.top", "pin.left"]',
-            "3 nodes of 'pin.left', which follows the rigid",
+            "rigid.head.faces[1]: 3 nodes of 'pin.left', which follows the rigid",
         ),
         ('faces = ["pin.top"]\n', "", "rigid.head: "),
         (

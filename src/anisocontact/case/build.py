@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -148,17 +149,18 @@ def build(file: CaseFile, python: bool = True) -> Built:
     contacts = _contacts(case, model, materials, bodies, own)
     steps = steps_of(case, model, CaseCourses(case, file.resolve, python))
     check_options(case.solver.options, case.solver.strategy)
-    problem = Problem(
-        model,
-        materials,
-        contacts,
-        _attached(case),
-        case.symmetry,
-        stabilised=case.solver.stabilisation,
-        coupled=_faces(case, model, bodies),
-        ties=[Tie(**section.given()) for section in case.tie],
-        cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
-    )
+    with _faces_by_key(case):
+        problem = Problem(
+            model,
+            materials,
+            contacts,
+            _attached(case),
+            case.symmetry,
+            stabilised=case.solver.stabilisation,
+            coupled=_faces(case, model, bodies),
+            ties=[Tie(**section.given()) for section in case.tie],
+            cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
+        )
     _check_output(case, problem)
     return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
 
@@ -238,6 +240,22 @@ def _sector(section: CyclicSection, place: str) -> CyclicSymmetry:
     """Cut faces of a sector."""
     with within(place):
         return CyclicSymmetry(**dict(section))
+
+
+@contextmanager
+def _faces_by_key(case: Case) -> Iterator[None]:
+    """Name coupled faces by their keys in the case file, where a script names its argument."""
+    try:
+        yield
+    except InputError as error:
+        keys = {
+            f"coupled.{group}": f"rigid.{name}.faces[{i}]"
+            for name, section in case.rigid.items()
+            for i, group in enumerate(section.faces)
+        }
+        if error.field not in keys:
+            raise
+        raise InputError(error.said, keys[error.field]) from None
 
 
 def _faces(case: Case, model: Model, bodies: Mapping[str, RigidBody]) -> list[CoupledFace]:
