@@ -72,6 +72,23 @@ def test_a_run_goes_on_bit_by_bit(gone_on, case):
     assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
 
 
+@pytest.mark.parametrize(("total", "told"), [(False, 1), (True, 0)])
+def test_an_amplitude_of_other_times_is_told(case, capsys, total, told):
+    """Requirement: an amplitude that stays at one value in a step is a warning that says of which
+    times it is. Times of the run in the second step moved nothing, and nothing was said. Held
+    values of an amplitude of the run are meant. Lines are counted."""
+    table = '[amplitude.late]\nkind = "table"\ntime = [1, 2]\nvalue = [0, 1]\n'
+    table += 'time_of = "total"\n' * total
+    late = 'pressure = { "bar.top" = { amplitude = "late", value = 10 } }\n'
+    waves = 'pressure = { "bar.top" = { amplitude = "wave", value = 10 } }\n'
+    text = CASE.replace("[amplitude.wave]", f"{table}\n[amplitude.wave]").replace(waves, late)
+    case.write_text(text.replace(late, "", 1))
+    assert main(["check", str(case)]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "at one value" in line]
+    assert len(lines) == told
+    assert all("step 'on'.pressure.\"bar.top\": its amplitude" in line for line in lines)
+
+
 def test_another_file_is_another_run(case, capsys):
     """Requirement: a function that has changed is not gone on with."""
     out = case.parent / "out"

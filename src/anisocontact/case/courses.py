@@ -17,6 +17,9 @@ from anisocontact.case.model import Case, StepSection
 from anisocontact.case.quantity import FREE
 from anisocontact.case.section import near
 
+#: Shares of a step at which an amplitude is looked at; no period divides them.
+_PLACES = (0.0, *((k * 0.618034) % 1.0 for k in range(1, 200)), 1.0)
+
 
 class CaseCourses:
     """Amplitudes and paths of a case.
@@ -116,6 +119,33 @@ def check_courses(case: Case) -> Iterator[InputError]:
         for kind in ("displacement", "motion", "anchor"):
             for name, given in getattr(step, kind).items():
                 yield from _along_path(given, axes_of, f"step[{i}].{kind}.{_key(name)}")
+
+
+def idle_amplitudes(case: Case) -> Iterator[str]:
+    """Amplitudes that steps name and that stay at one value in them, a line each.
+
+    So it is where times are meant to count from the beginning of the run and count from that of
+    the step. Functions in Python are left out, and holds of amplitudes of the run.
+    """
+    built = {
+        name: _amplitude(table, f"amplitude.{name}", Path, python=False)
+        for name, table in case.amplitude.items()
+        if not (table.of_run or isinstance(table, FunctionTable))
+    }
+    for step in case.step:
+        named = {place: v.amplitude for place, v in _values(step) if isinstance(v, Scheduled)}
+        named |= {
+            f"rotation.{_key(group)}": turn.amplitude
+            for group, turn in step.rotation.items()
+            if turn.amplitude is not None
+        }
+        for place, name in named.items():
+            if name in built and len({built[name](step.duration * s) for s in _PLACES}) == 1:
+                yield (
+                    f"step {step.name!r}.{place}: its amplitude stays at one value from the time 0 "
+                    f"to {step.duration:g}: times count from where the step begins, with "
+                    'time_of = "total" in its table from the beginning of the run'
+                )
 
 
 def _along_path(given: Any, axes_of: Mapping[str, list[str]], place: str) -> Iterator[InputError]:
