@@ -18,6 +18,8 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
+#: Share of the least residual so far that one which has come nearer keeps at most.
+NEARER = 0.95
 #: Corrections after which only a residual that falls is waited for.
 PATIENCE = 25
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
@@ -50,13 +52,15 @@ class ResidualHistory:
             damped: Whether corrections are taken in shares.
         """
         reasons = PETSc.SNES.ConvergedReason
+        self._touching.append(self._contacts.touching())
+        self._sticking.append(self._contacts.sticking())
         if self.residuals[-1] > DIVERGED * min(self.residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
         if self._idles():
             return reasons.DIVERGED_LOCAL_MIN
         if not (searching or damped) and self._cycles():
             return reasons.DIVERGED_MAX_IT
-        if len(self.residuals) > self._patience and not self._falls():
+        if len(self.residuals) > self._patience and not (self._falls() or self._moves_on()):
             return reasons.DIVERGED_MAX_IT
         return reasons.DIVERGED_LINE_SEARCH if searching and self._stuck() else None
 
@@ -64,8 +68,6 @@ class ResidualHistory:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
         if not self._contacts.simultaneous:
             return False
-        self._touching.append(self._contacts.touching())
-        self._sticking.append(self._contacts.sticking())
         known, touching = self.residuals, self._touching
         if len(known) < IDLE_OVER + 3:
             return False
@@ -100,6 +102,19 @@ class ResidualHistory:
         """Whether the edge of what sticks moves on, by a point in nearly every correction."""
         change = np.diff(self._sticking[-IDLE_OVER - 1 :])
         return bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
+
+    def _moves_on(self) -> bool:
+        """Whether fewer or more points touch than ever, with a smaller residual than ever.
+
+        So it is where the edge of a contact runs along a slender body, by a point in a correction
+        or two: a residual that rises and falls tells it from a cycle by its least alone.
+        """
+        known, touching = self.residuals[1:], self._touching[1:]
+        if len(known) < 2 * IDLE_OVER:
+            return False
+        before, lately = touching[:-IDLE_OVER], touching[-IDLE_OVER:]
+        farther = min(lately) < min(before) or max(lately) > max(before)
+        return farther and min(known[-IDLE_OVER:]) < NEARER * min(known[:-IDLE_OVER])
 
     def _cycles(self) -> bool:
         """Whether full steps go to and fro between two states: nothing will end that."""
