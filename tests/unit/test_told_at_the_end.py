@@ -73,3 +73,30 @@ def test_what_is_said_on_the_way_is_said_at_the_end(tmp_path, capsys) -> None:
     case.write_text(CASE.replace("\n[solver]", f"{more}\n[solver]"))
     assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
     assert sorted(_ended(out)) == sorted(told)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+@pytest.mark.parametrize(("pressed", "told"), [(0.09, False), (0.12, True)])
+def test_small_strain_that_is_not_small(tmp_path, capsys, pressed, told, strategy) -> None:
+    """Requirement: a body at small strain that is strained by more than a tenth is a warning.
+
+    Source: a model that leaves its range says so. A block squeezed to a hundredth of its height
+    had a force, and not a word. Its mean strain is the way of its head over its height, to 1e-6,
+    the tolerance of the multipliers below it.
+    """
+    text = CASE.replace("E = 1e-9", "E = 1000").replace("nu = 0.499", "nu = 0.3")
+    text = text.replace(', "block.bottom" = { z = 0 }', "").replace("-0.01", f"-{pressed}")
+    text = text.replace('"iterative"', f'"{strategy}"').replace(
+        "coarse_ksp_gmres_restart", "snes_max_it"
+    )
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(text.replace("snes_max_it = 7", "snes_max_it = 25"))
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    about = "body 'block', at small strain, is strained by 0.12 as a whole"
+    for said in capsys.readouterr():
+        assert sum(about in line for line in said.splitlines()) == told
+    assert sum(about in line for line in _ended(out)) == told
+    strained = json.loads((out / "summary.json").read_text())["strained"]
+    assert set(strained) == {"block"} if told else not strained
+    if told:
+        assert strained["block"]["strain"] == pytest.approx(pressed, rel=1e-6)

@@ -19,10 +19,10 @@ from anisocontact.contact.hints import (
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.cut_faces import PAST
-from anisocontact.solver.stepping.increment_warnings import UNBALANCED
+from anisocontact.solver.stepping.increment_warnings import FAR, UNBALANCED
 from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
-from anisocontact.solver.system.rotations import CURE, WARNED
+from anisocontact.solver.system.rotations import CURE, STRAINED, WARNED
 
 #: Angle along a part of an increment beyond which it is worth a warning, radian.
 TURNED = MARGIN * FOLLOWED
@@ -95,14 +95,18 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
         before: What this gave at the one before; empty at the start.
 
     Returns:
-        "turned", by body, "past_cuts", by contact, "energy_residual", "relaxed" and "unbalanced",
-        as JSON can have them.
+        "turned" and "strained", by body, "past_cuts", by contact, "energy_residual", "relaxed" and
+        "unbalanced", as JSON can have them.
     """
     turned = dict(before.get("turned", {}))
     for name, now in accepted.turned.items():
         if name not in turned or now.angle > turned[name]["angle"]:
             entry = {"angle": now.angle, "strain": now.strain, "stress": now.stress}
             turned[name] = entry | {"time": accepted.time, "text": str(now)}
+    far = dict(before.get("strained", {}))
+    for name, now in accepted.turned.items():
+        if now.strained > far.get(name, {}).get("strain", STRAINED):
+            far[name] = {"strain": now.strained, "time": accepted.time}
     past = dict(before.get("past_cuts", {}))
     for name, lost in accepted.past_cuts.items():
         if lost > past.get(name, {}).get("share", 0.0):
@@ -115,7 +119,7 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
     so = {"relaxed": accepted.relaxed, "unbalanced": accepted.residuals[-1] > UNBALANCED}
     times = {key: [*before.get(key, []), *[accepted.time] * bool(now)] for key, now in so.items()}
     left |= {"share": share}
-    return {"turned": turned, "past_cuts": past, "energy_residual": left, **times}
+    return {"turned": turned, "strained": far, "past_cuts": past, "energy_residual": left, **times}
 
 
 def of_models(summary: Mapping[str, Any]) -> list[str]:
@@ -128,6 +132,10 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
         f"body {name!r}, at small strain, {turned['text']}, at time {turned['time']:.4g}; {CURE}"
         for name, turned in summary.get("turned", {}).items()
         if turned["angle"] > WARNED
+    ]
+    found += [
+        f"{FAR.format(name=name, strain=far['strain'], cure=CURE)}, at time {far['time']:.4g}"
+        for name, far in summary.get("strained", {}).items()
     ]
     found += [
         f"contact {name!r}: {PAST.format(past['share'])}, at time {past['time']:.4g}"

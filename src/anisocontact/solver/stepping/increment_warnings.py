@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.report import Accepted
-from anisocontact.solver.system.rotations import CURE, WARNED
+from anisocontact.solver.system.rotations import CURE, STRAINED, WARNED
 
 #: What is said where penalties hold instead of multipliers.
 RELAXED = (
@@ -24,6 +24,11 @@ HELD = (
     "where supports hold both sides along the normal: no equilibrium says what the pressure is "
     "there, it is left to the penalty, zero where nothing overlaps, and what presses the sides "
     "together there is in the reactions of these supports alone"
+)
+#: What is said of a body at small strain that is strained far.
+FAR = (
+    "body {name!r}, at small strain, is strained by {strain:.2g} as a whole, and forces are off by "
+    "a share of that size; {cure}"
 )
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4
@@ -71,6 +76,8 @@ def _summed_up(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for name, turned in accepted.turned.items():
         if turned.angle > WARNED:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
+        if turned.strained > STRAINED:
+            yield f"strained {name}", FAR.format(name=name, strain=turned.strained, cure=CURE)
     for name, lost in accepted.past_cuts.items():
         yield f"past {name}", f"contact {name!r}: {PAST.format(lost)}"
     if accepted.imbalance.large:

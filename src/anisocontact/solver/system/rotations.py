@@ -24,6 +24,8 @@ WARNED, REFUSED = float(np.radians(1.0)), float(np.radians(5.0))
 #: The same of cells in a body that does not turn as a whole: where it bends its parts are free to
 #: take on the length that small strain gives them.
 BENT = 2.0 * REFUSED
+#: Mean strain of a body beyond which it is worth a warning that it is small strain.
+STRAINED = 0.1
 #: Share of the volume of a body from which on such cells are no matter of a corner alone.
 PART = 0.1
 #: What a body at small strain that turns further needs.
@@ -52,6 +54,7 @@ class BodyRotation:
         stress: Stress that the larger of both makes of nothing, `E (1 - cos t)`.
         turns: Whether the whole turns by more than it is strained.
         bent: Share of the volume in cells that turn so and by more than ten degrees.
+        strained: Largest principal value, in size, of the mean strain.
     """
 
     whole: float
@@ -59,6 +62,7 @@ class BodyRotation:
     stress: float
     turns: bool = True
     bent: float = 0.0
+    strained: float = 0.0
 
     @property
     def angle(self) -> float:
@@ -207,19 +211,20 @@ class Rotations:
             [*astuple(turned), self._looked.get(name, 0.0)]
             for name, turned in self.accepted.items()
         ]
-        return np.array(rows, dtype=np.float64).reshape(-1, 6)
+        return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
     def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
         for name, row in zip(self._young, kept.tolist(), strict=False):
-            whole, largest, stress, turns, bent, self._looked[name] = row
-            self.accepted[name] = BodyRotation(whole, largest, stress, bool(turns), bent)
+            whole, largest, stress, turns, *rest, self._looked[name] = row
+            self.accepted[name] = BodyRotation(whole, largest, stress, bool(turns), *rest)
 
     def _turned(self, name: str, gradient: Floats, largest: float, bent: float) -> BodyRotation:
         whole = polar_angle(gradient)
         strain = 0.5 * float(np.linalg.norm(gradient + gradient.T))
         stress = self._young[name] * spurious(max(whole, largest))
-        return BodyRotation(whole, largest, stress, whole >= OF_STRAIN * strain, bent)
+        principal = float(np.abs(np.linalg.eigvalsh(0.5 * (gradient + gradient.T))).max())
+        return BodyRotation(whole, largest, stress, whole >= OF_STRAIN * strain, bent, principal)
 
 
 class _Cells:
