@@ -65,6 +65,48 @@ def converted(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str) -> 
 
 
 @pytest.mark.parametrize("amplitude", ["", ", AMPLITUDE=RAMP"])
+def test_forces_given_twice_in_a_step_add_up(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], amplitude: str
+):
+    """A force on a node that has one in the same step is added to it, in a later step it replaces.
+
+    Source: CalculiX CrunchiX User's Manual, *CLOAD.
+    """
+    card = f"*CLOAD{amplitude}"
+    first = f"{card}\n5, 3, 1.\n5, 3, 2.\n{card}\n5, 3, 4.\n5, 1, 8."
+    case, _ = converted(
+        tmp_path, capsys, deck(f"{first}\n*END STEP\n*STEP\n*STATIC\n1., 1.\n{card}\n5, 3, 3.")
+    )
+    one, two = (step["force"]["cube.node5"] for step in case["step"])
+    ends = {"x": 8.0, "z": 7.0}, {"z": 3.0}
+    if amplitude:
+        ramps = ({k: {"amplitude": "ramp", "value": v} for k, v in end.items()} for end in ends)
+        assert (one, two) == tuple(ramps)
+    else:
+        assert (one, two) == ends
+
+
+@pytest.mark.parametrize("renewed", [False, True])
+def test_forces_beside_those_of_an_earlier_step_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], renewed: bool
+):
+    """A force on a node of a set that had one before replaces it in CalculiX, and adds here."""
+    later = f"*CLOAD{', OP=NEW' if renewed else ''}\n5, 3, 3."
+    loads = f"*CLOAD\nCORNERS, 3, 1.\n*END STEP\n*STEP\n*STATIC\n1., 1.\n{later}"
+    _, said = converted(tmp_path, capsys, deck(loads))
+    line = "on cube.node5 along z replaces what nodes had by cube.corners in an earlier step"
+    assert (line in said) is not renewed
+
+
+def test_forces_with_two_amplitudes_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """One direction of a node follows one amplitude, as in CalculiX: the second one is left out."""
+    loads = "*CLOAD\n5, 3, 1.\n*CLOAD, AMPLITUDE=RAMP\n5, 3, 2."
+    case, said = converted(tmp_path, capsys, deck(loads))
+    assert case["step"][0]["force"] == {"cube.node5": {"z": 1.0}}
+    assert "two forces on cube.node5 along z in one step, with different amplitudes" in said
+
+
+@pytest.mark.parametrize("amplitude", ["", ", AMPLITUDE=RAMP"])
 def test_even_shares_of_eight_nodes_are_the_force_of_the_face(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], amplitude: str
 ):

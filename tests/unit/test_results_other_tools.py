@@ -69,6 +69,8 @@ def test_one_file_of_all_states(folder, tmp_path, capsys):
         assert np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray("body")), [0, 0])
     assert main(["convert", str(folder), str(tmp_path / "run.vtu")]) == 2
     assert "results are written as .vtkhdf" in capsys.readouterr().err
+    assert main(["convert", str(folder), str(tmp_path / "none" / "run.vtkhdf")]) == 2
+    assert "run.vtkhdf' cannot be written: No such file or directory" in capsys.readouterr().err
 
 
 PRESSED = """

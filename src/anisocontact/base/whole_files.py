@@ -7,6 +7,32 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from anisocontact.base.errors import InputError
+
+
+@contextmanager
+def named_by_user(path: Path, field: str = "") -> Iterator[None]:
+    """Say in a line why a file that the user has named cannot be written.
+
+    Args:
+        path: The file.
+        field: The entry or argument that names it.
+
+    Raises:
+        InputError: Writing it in the block failed.
+
+    Example:
+        >>> with named_by_user(Path("n/a.txt")):
+        ...     raise IsADirectoryError(21, "what a library says")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: 'n/a.txt' cannot be written: Is a directory
+    """
+    try:
+        yield
+    except OSError as problem:
+        why = os.strerror(problem.errno) if problem.errno else problem  # libraries say much more
+        raise InputError(f"'{path}' cannot be written: {why}", field) from None
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:

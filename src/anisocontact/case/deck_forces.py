@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -49,12 +50,14 @@ class StepForces:
         forces: Group -> component -> force, or its end and its amplitude.
         supports: Group -> component -> displacement.
         released: Whether supports of earlier steps are not there any more.
+        renewed: Whether their forces are not.
     """
 
     name: str
     forces: dict[str, Any]
     supports: Mapping[str, Mapping[str, object]]
     released: bool
+    renewed: bool
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,7 @@ class NodalForces:
             for group, given in step.supports.items():
                 supports[group] = {**supports.get(group, {}), **given}
             yield from self._taken_up(step, supports)
+        yield from self._beside_earlier(steps)
         sides = self._sides({n for s in steps for group in s.forces for n in self.members[group]})
         for component in "xyz" if sides else "":
             yield from self._on_faces(component, steps, sides)
@@ -112,6 +116,21 @@ class NodalForces:
                     f"force of {step.name} on {group} along {' and '.join(idle)}: supports lead "
                     "all of its nodes there"
                 )
+
+    def _beside_earlier(self, steps: list[StepForces]) -> Iterator[str]:
+        """Lines on nodes whose forces of an earlier step, by another group, decks replace."""
+        earlier: set[tuple[str, str]] = set()
+        for step in steps:
+            if step.renewed:
+                earlier.clear()
+            here = {(group, c) for group, given in step.forces.items() for c in given}
+            for (new, c), (old, before) in product(sorted(here - earlier), sorted(earlier)):
+                if c == before and not self.members[new].isdisjoint(self.members[old]):
+                    yield (
+                        f"that the force of {step.name} on {new} along {c} replaces what nodes had "
+                        f"by {old} in an earlier step: both are there now"
+                    )
+            earlier |= here
 
     def _on_faces(
         self, component: str, steps: list[StepForces], sides: list[tuple[int, ...]]

@@ -121,7 +121,10 @@ class Steps:
                 components = {
                     name: self.with_amplitude(value, amplitude) for name, value in given.items()
                 }
-                groups[group] = {**groups.get(group, {}), **components}
+                before = groups.get(group, {})
+                if key == "force":
+                    components = _added(before, components, group)
+                groups[group] = {**before, **components}
             else:
                 groups[group] = self.with_amplitude(given, amplitude)
         return True
@@ -148,6 +151,7 @@ class Steps:
                 step.keys.setdefault("force", {}),
                 step.keys.get("displacement", {}),
                 "displacement" in step.new,
+                "force" in step.new,
             )
             for step in self._steps
         ]
@@ -284,6 +288,30 @@ class Steps:
                     known = before.setdefault(key, {}).get(group, {})
                     now = given if isinstance(given, dict) and "amplitude" not in given else None
                     before[key][group] = given if now is None else {**known, **now}
+
+
+def _added(before: _Given, now: _Given, group: str) -> _Given:
+    """Forces with those that the same step gives a group before: CalculiX adds them.
+
+    Raises:
+        InputError: They follow different amplitudes.
+    """
+    total = dict(now)
+    for name in before.keys() & now.keys():
+        (one, first), (other, second) = (_ramp(given[name]) for given in (before, now))
+        if first != second:
+            raise InputError(
+                f"two forces on {group} along {name} in one step, with different amplitudes"
+            )
+        total[name] = with_amplitude(one + other, first)
+    return total
+
+
+def _ramp(force: Any) -> tuple[float, str]:
+    """The end of a force, and its amplitude; empty for none."""
+    if isinstance(force, dict):
+        return float(force["value"]), str(force["amplitude"])
+    return float(force), ""
 
 
 def _gone(key: str, before: Any, now: Any) -> Any:

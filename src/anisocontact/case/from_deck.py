@@ -64,7 +64,7 @@ def case_of_deck(path: Path, target: Path) -> tuple[str, list[str]]:
         InputError: The deck cannot be read, or none of its steps is static.
         OSError: It cannot be read.
     """
-    deck, mesh = read_deck(path), file_arrays(path, field="")
+    mesh, deck = file_arrays(path, field=""), read_deck(path)  # the former says what is no file
     deck.cards, left = static_steps(deck.cards)
     case = _Case(deck, mesh, left)
     file = path.resolve().relative_to(target.resolve().parent, walk_up=True)

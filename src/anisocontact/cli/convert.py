@@ -43,7 +43,7 @@ def command(arguments: argparse.Namespace) -> int:
 
 def _case(source: Path, target: Path) -> int:
     """Write what a deck says as a case file."""
-    from anisocontact.base.whole_files import replacing
+    from anisocontact.base.whole_files import named_by_user, replacing
     from anisocontact.case.from_deck import case_of_deck
 
     if source.suffix.lower() != ".inp":
@@ -51,7 +51,7 @@ def _case(source: Path, target: Path) -> int:
     if target.exists():
         raise InputError(f"'{target}' exists already; give another name")
     text, left_out = case_of_deck(source, target)
-    with replacing(target) as draft:
+    with named_by_user(target), replacing(target) as draft:
         draft.write_text(text, encoding="utf-8")
     for line in left_out:
         say(f"left out  {line}")

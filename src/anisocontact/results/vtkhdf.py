@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.whole_files import replacing
+from anisocontact.base.whole_files import named_by_user, replacing
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.read import Results, needed
 
@@ -28,12 +28,13 @@ def write_vtkhdf(results: Results, path: str | Path, kind: str = "fields") -> No
         kind: "fields" of the bodies, "contact", or "surfaces".
 
     Raises:
-        InputError: h5py is not installed, or nothing was written.
+        InputError: h5py is not installed, nothing was written, or the file cannot be.
     """
     h5py = needed("h5py")
     states, times = results.states(kind)
     first = states[0]
-    with replacing(Path(path)) as draft, h5py.File(draft, "w") as file:
+    path = Path(path)
+    with named_by_user(path), replacing(path) as draft, h5py.File(draft, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([2, 2])
         name = first.kind.encode()

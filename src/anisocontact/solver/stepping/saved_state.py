@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.whole_files import replacing
+from anisocontact.base.whole_files import named_by_user, replacing
 
 #: What NumPy says of a file that is no state, or half of one.
 _UNREADABLE = (OSError, EOFError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
@@ -29,12 +29,8 @@ def write_arrays(file: Path, arrays: Mapping[str, np.ndarray]) -> None:
     Raises:
         InputError: The file cannot be written.
     """
-    try:
-        with replacing(file) as draft, draft.open("wb") as stream:
-            np.savez(stream, allow_pickle=False, **arrays)
-    except OSError as problem:
-        text = f"'{file}' cannot be written: {problem.strerror or problem}"
-        raise InputError(text, "path") from None
+    with named_by_user(file, "path"), replacing(file) as draft, draft.open("wb") as stream:
+        np.savez(stream, allow_pickle=False, **arrays)
 
 
 def read_arrays(file: Path) -> dict[str, np.ndarray]:
