@@ -148,3 +148,29 @@ def test_energy_balance_converges(load: str, end: float, order: int) -> None:
         errors.append(abs(energy["residual"]) / energy["external"])
     assert errors[0] < 5e-3
     assert errors[1] / errors[2] == pytest.approx(2.0**order, rel=0.15)
+
+
+def test_push_over_a_surface_that_is_slippery_across() -> None:
+    """Push at 30 degrees where one coefficient is far smaller than the other.
+
+    Requirement: the force is along the push, of the size where the ellipse meets it,
+    `N / sqrt((cos / mu_1)^2 + (sin / mu_2)^2)`, and the point has moved along it as asked.
+    Source: yield condition. Iterates went off to 1e20, where rounding of the position hides any
+    residual, and were taken for an equilibrium with a force that was not along the push.
+    Tolerance: 1e-4 of the force, as slip is backward Euler and steady after 20 steps; rounding
+    of the travel.
+    """
+    across, marks = 1e-3, make_directions("constant", vector=(1, 0, 0))
+    plate = Interface(
+        make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
+        NormalLaw(penalty=1e5),
+        Adhesion(stiffness=(1e5, 1e5)),
+        Friction(coefficients=(0.3, across), directions=marks),
+    )
+    along = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6), 0.0])
+    push = Push(along, travel=[0, 1e-3], start=(0, 0, 0), pressure=10.0)
+    history = drive(plate, push)
+    force = -history.points["traction"][-1, 0] * [1, 1, 0]
+    size = 10.0 / np.linalg.norm(along[:2] / [0.3, across])
+    assert force == pytest.approx(size * along, rel=1e-4)
+    assert history.points["position"][-1, 0] @ along == pytest.approx(1e-3, rel=1e-9)

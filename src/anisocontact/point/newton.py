@@ -10,6 +10,8 @@ from anisocontact.point.press import pressed
 
 #: Of the forces at the trial position.
 TOLERANCE = 1e-12
+#: Of these forces what rounding of positions may leave: farther off it is no equilibrium.
+MOST_ROUNDING = 1e-6
 #: Iterations before the step is cut.
 MOST_ITERATIONS = 40
 
@@ -44,10 +46,11 @@ def solve(balance: PointBalance, guess: Floats) -> tuple[Trial, int]:
 
 
 def _rounding(trial: Trial) -> float:
-    """Change of the residual when the position changes by a few roundings."""
+    """Change of the residual when the position changes by a few roundings, if that is little."""
     far = float(np.abs(trial.pose.points).max())
     stiffness = float(np.abs(trial.jacobian[:, :3]).max())
-    return 64.0 * float(np.finfo(np.float64).eps) * far * stiffness
+    change = 64.0 * float(np.finfo(np.float64).eps) * far * stiffness
+    return min(change, MOST_ROUNDING * trial.scale)
 
 
 def _direction(trial: Trial) -> Floats:
