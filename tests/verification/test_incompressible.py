@@ -190,14 +190,15 @@ def _counted(nu: float, friction: float | None) -> tuple[int, int]:
 def test_corrections_do_not_grow_with_the_bulk_modulus(friction: float | None) -> None:
     """A soft block is as quickly found where it keeps its volume as where it nearly does.
 
-    Requirement: nu = 0.5, K = 1.7e6 G, takes no cut and at most twice the corrections of nu = 0.49,
-    K = 50 G. Source: Newton's method of the mixed form does not know K [Simo Taylor Pister 1985].
-    Measured 59 for 35 glued, 59 for 31 sliding; 295 and 847, in 28 and 33 parts, with the pressure
-    of the displacements in the tangent.
+    Requirement: nu = 0.5, K = 1.7e6 G, takes no cut and at most 1.4 times the corrections of nu =
+    0.49, K = 50 G. Source: Newton's method of the mixed form does not know K [Simo Taylor Pister
+    1985]. Measured 38 for 34 glued, 37 for 31 sliding; 61 and 59 where the first correction of an
+    increment has the pressures of displacements that are extrapolated; 295 and 847, in 28 and 33
+    parts, with the pressure of the displacements in the tangent.
     """
     (_, before), (parts, after) = _counted(0.49, friction), _counted(0.5, friction)
     assert parts == 12
-    assert after <= 2.0 * before
+    assert after <= 1.4 * before
 
 
 def test_surface_of_an_incompressible_body_is_soft() -> None:

@@ -10,7 +10,8 @@ the shape of the cell, so that a patch test holds.
 Where K is large a Newton correction du leaves a pressure `K de(du, du)` of second order in it that
 means nothing, and a tangent with the stress of that pressure goes astray. There tangents have the
 pressure that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed
-form in which p is an unknown of its own.
+form in which p is an unknown of its own. The first of them has that of the accepted state: one that
+is extrapolated changes the volume by the square of the increment, which K makes a pressure of, too.
 """
 
 from __future__ import annotations
@@ -109,6 +110,7 @@ class CellPressures:
         self.follow, self.hardness = False, 0.0
         self.hardnesses: Floats = np.zeros(0)
         self._from: tuple[Vec, Floats] | None = None
+        self._begins = False
         self._in_tangent: Floats | None = None
         mass, change = self._forms(model, laws, dx, heated)
         if not self.of:
@@ -287,11 +289,15 @@ class CellPressures:
         return beyond.ptap(self._slope)
 
     def follow_from(self, begin: bool) -> None:
-        """Let tangents have pressures that corrections from here on lead to, or those of now."""
+        """Let tangents have pressures that corrections lead to from those of here on, or of now.
+
+        Args:
+            begin: Whether they do: the first tangent has the pressures of here, wherever it is.
+        """
         self._from = None
+        self._begins = begin
         if begin:
             self._from = self._here()
-            self._assemble_slope()
 
     @contextmanager
     def predicted(self) -> Iterator[None]:
@@ -302,9 +308,12 @@ class CellPressures:
             return
         u, change = self._from
         now = self._pressure.x.array.copy()
-        more = self._slope.createVecLeft()
-        self._slope.mult(self._u.x.petsc_vec - u, more)
-        self._in_tangent = change + more.array_r.reshape(change.shape)
+        self._in_tangent = change
+        if not self._begins:
+            more = self._slope.createVecLeft()
+            self._slope.mult(self._u.x.petsc_vec - u, more)
+            self._in_tangent = change + more.array_r.reshape(change.shape)
+        self._begins = False
         self._take(self._in_tangent)
         yield
         self._pressure.x.array[:] = now

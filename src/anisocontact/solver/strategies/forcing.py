@@ -8,7 +8,8 @@ from anisocontact.solver.strategies.system import System
 
 #: Residual of a correction over its right-hand side that is asked for at most.
 _FINEST = 1e-13
-#: Forces that a correction may leave, over the smallest ones at work since the increment began.
+#: Forces that a correction may leave, over the smallest ones at work since the increment began,
+#: or since the last one did.
 _LEFT = 3e-4
 _TINY = float(np.finfo(np.float64).tiny)
 
@@ -32,10 +33,16 @@ class Forcing:
         self, tolerance: float, rough: float = 1e-2, careful: float = 1e-5, fine: float = 1e-5
     ) -> None:
         self.tolerance, self._rough, self._careful, self._fine = tolerance, rough, careful, fine
-        self._before = self._least = np.inf
+        self._before = self._least = self._earlier = np.inf
 
-    def begin(self) -> None:
-        """Take it that an increment begins."""
+    def begin(self, pressed: bool = False) -> None:
+        """Take it that an increment begins.
+
+        Args:
+            pressed: Whether it may begin with pressures that mean nothing, as where bodies that
+                keep their volume are extrapolated: forces at work are those of the last one then.
+        """
+        self._earlier = self._least if pressed else np.inf
         self._before = self._least = np.inf
 
     def rtol(self, system: System, size: float) -> float:
@@ -46,10 +53,10 @@ class Forcing:
             size: Norm of the right-hand side, force.
         """
         self._least = min(self._least, system.balance.force_scale or np.inf)
-        share = self._share(system, size)
-        if size <= self._least:
+        share, least = self._share(system, size), min(self._least, self._earlier)
+        if size <= least:
             return share
-        return min(share, max(_LEFT * self._least / size, _FINEST))
+        return min(share, max(_LEFT * least / size, _FINEST))
 
     def _share(self, system: System, size: float) -> float:
         """What the residual of now allows for."""

@@ -63,7 +63,7 @@ class LaggedNewton(Newton):
     def solve(
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
     ) -> NewtonResult:
-        self._forcing.begin()
+        self._forcing.begin(self._system.in_full)
         self._stiffness.begin()
         return super().solve(x, full_steps, damping)
 
