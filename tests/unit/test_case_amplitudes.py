@@ -72,6 +72,21 @@ def test_a_run_goes_on_bit_by_bit(gone_on, case):
     assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("end", "told"), [('"polyline"\nduration = 5', 2), ('"table"\ntime = [0, 1]', 0)]
+)
+def test_a_path_longer_than_its_step_is_told(case, capsys, end, told):
+    """Requirement: a path that ends after the step that follows it is a warning that says when both
+    end. One of 5 in a step of 1 was followed for a fifth, and nothing was said. Lines are
+    counted, one for each of the two steps."""
+    path = f"kind = {end}\nx = [0, 0.01]\ny = [0, 0.01]\n"
+    case.write_text(CASE.replace('kind = "circle"\nradius = 0.01\n', path))
+    assert main(["check", str(case)]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "its path ends" in line]
+    assert len(lines) == told
+    assert all("anchor.pull: its path ends at the time 5 and the step at 1" in s for s in lines)
+
+
 @pytest.mark.parametrize(("total", "told"), [(False, 1), (True, 0)])
 def test_an_amplitude_of_other_times_is_told(case, capsys, total, told):
     """Requirement: an amplitude that stays at one value in a step is a warning that says of which

@@ -329,6 +329,18 @@ def test_a_force_that_turns_where_sliding_begins_is_told(tmp_path, capsys, stiff
     assert ("turn at once where sliding begins" in capsys.readouterr().out) is said
 
 
+@pytest.mark.parametrize(("coefficients", "said"), [("[0.3, 1e-5]", True), ("[1e-4, 0.3]", False)])
+def test_an_ellipse_too_thin_is_told(tmp_path, capsys, coefficients, said):
+    """Below 1e-4 increments fail: measured on a block that is pressed and dragged, with slave nodes
+    and points, multipliers and penalties, all are solved at 3e-4, some at 3e-5, none at 3e-6."""
+    axes = 'directions = {{ kind = "constant", vector = [1, 0, 0] }}'
+    text = BLOCK.replace("coefficients = 0", f"coefficients = {coefficients}, {axes}")
+    case = tmp_path / "case.toml"
+    case.write_text(text.format(gap=0.0, penalty=1e4, way=-0.006))
+    assert main(["check", str(case)]) == 0
+    assert ("0.3 and 1e-05, have a ratio of 3e-05: below" in capsys.readouterr().out) is said
+
+
 @pytest.mark.parametrize("gap", [0.0, 0.5])
 def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     """Springs in series, E/L and eps: the penetration is 1/(1 + eps L/E) of the approach.

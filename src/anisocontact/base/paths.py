@@ -23,6 +23,8 @@ _NOTHING = 1e-12
 class Path(Protocol):
     """A curve over time; a motion along it begins where the body or group is.
 
+    One that comes to an end has an attribute `end`, the time of its last position.
+
     Example:
         >>> class Helix:
         ...     def components(self):
@@ -80,6 +82,7 @@ class TimedPath:
         values = registry.values(self.entry, parameters, field)
         self._time, self._columns = values["time"], _given(values, field)
         check_times(self._time, dict(self._columns), field)
+        self.end: float = self._time[-1]
 
     def components(self) -> dict[str, Amplitude]:
         """Position over time by axis."""
@@ -128,6 +131,7 @@ class Polyline:
             raise InputError(text, field or _KIND)
         gone = np.concatenate([[0.0], np.cumsum(lengths)])
         self._timed = TimedPath(**{"time": duration * gone / gone[-1], **columns})
+        self.end: float = duration
 
     def components(self) -> dict[str, Amplitude]:
         """Position over time by axis."""

@@ -15,7 +15,7 @@ from anisocontact.base.limits import Limits
 from anisocontact.bulk import Material, materials
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
-from anisocontact.case.courses import CaseCourses, idle_amplitudes
+from anisocontact.case.courses import CaseCourses, cut_paths, idle_amplitudes
 from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
@@ -87,7 +87,7 @@ class Built:
         low = np.min(self.problem.comm.allgather(low), axis=0)
         high = np.max(self.problem.comm.allgather(high), axis=0)
         found = doubts(case.units, young, densities, float((high - low).max()))
-        found += [*_untimed(case), *idle_amplitudes(case)]
+        found += [*_untimed(case), *idle_amplitudes(case), *cut_paths(case)]
         found += _at_points(case, self.problem)
         return found + [
             f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'

@@ -19,6 +19,10 @@ from anisocontact.case.section import near
 
 #: Shares of a step at which an amplitude is looked at; no period divides them.
 _PLACES = (0.0, *((k * 0.618034) % 1.0 for k in range(1, 200)), 1.0)
+#: Time after a step, as a share of it, that is rounding.
+_LATE = 1e-9
+#: What of a step may follow a path.
+_WITH_PATHS = ("displacement", "motion", "anchor")
 
 
 class CaseCourses:
@@ -116,7 +120,7 @@ def check_courses(case: Case) -> Iterator[InputError]:
             if turn.amplitude is not None and turn.amplitude not in case.amplitude:
                 place = f"step[{i}].rotation.{_key(name)}"
                 yield _missing(turn.amplitude, list(case.amplitude), place)
-        for kind in ("displacement", "motion", "anchor"):
+        for kind in _WITH_PATHS:
             for name, given in getattr(step, kind).items():
                 yield from _along_path(given, axes_of, f"step[{i}].{kind}.{_key(name)}")
 
@@ -146,6 +150,20 @@ def idle_amplitudes(case: Case) -> Iterator[str]:
                     f"to {step.duration:g}: times count from where the step begins, with "
                     'time_of = "total" in its table from the beginning of the run'
                 )
+
+
+def cut_paths(case: Case) -> Iterator[str]:
+    """Paths that come to an end after the steps that follow them, a line each."""
+    ends = {name: getattr(_path(t, f"path.{name}"), "end", 0.0) for name, t in case.path.items()}
+    for step in case.step:
+        for kind in _WITH_PATHS:
+            for name, given in getattr(step, kind).items():
+                if given.path is not None and ends[given.path] > step.duration * (1.0 + _LATE):
+                    yield (
+                        f"step {step.name!r}.{kind}.{_key(name)}: its path ends at the time "
+                        f"{ends[given.path]:g} and the step at {step.duration:g}: what comes later "
+                        "is not followed; times count from where the step begins"
+                    )
 
 
 def _along_path(given: Any, axes_of: Mapping[str, list[str]], place: str) -> Iterator[InputError]:

@@ -9,7 +9,7 @@ from anisocontact.base.errors import within
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
 from anisocontact.interface import ContactLaw, Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw, numerical_adhesion
 from anisocontact.surfaces import Surface, make_surface
 
 if TYPE_CHECKING:
@@ -127,12 +127,6 @@ def interface(law: ContactLaw, master: Surface, place: str) -> Interface:
 
 
 def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
-    adhesion = Adhesion(
-        **section.adhesion.chosen,
-        **_numbers(section.adhesion, auto),
-        directions=directions(section.adhesion.directions, "adhesion.directions"),
-        directions_on=section.adhesion.directions_on,
-    )
     friction = Friction(
         **section.friction.chosen,
         **_numbers(section.friction, auto),
@@ -143,7 +137,19 @@ def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
         directions_on=section.friction.directions_on,
         directions_second_on=section.friction.directions_second_on,
     )
-    return normal_law(section, auto), adhesion, friction
+    return normal_law(section, auto), _adhesion(section.adhesion, auto, friction), friction
+
+
+def _adhesion(section: Any, auto: float, friction: Friction) -> Adhesion:
+    along = directions(section.directions, "adhesion.directions")
+    if along is None and section.parameters() == {"stiffness": AUTO}:
+        return numerical_adhesion(friction, auto)
+    return Adhesion(
+        **section.chosen,
+        **_numbers(section, auto),
+        directions=along,
+        directions_on=section.directions_on,
+    )
 
 
 def normal_law(section: Laws, auto: float) -> NormalLaw:

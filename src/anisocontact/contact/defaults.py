@@ -5,7 +5,7 @@ from __future__ import annotations
 from anisocontact.contact.penalty import facet_size
 from anisocontact.interface import AdhesionAndFriction, ContactLaw, PythonLaw
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import Friction, NormalLaw, numerical_adhesion
 from anisocontact.mesh import Model
 
 #: Laws without one of the pressure, which is then a multiplier.
@@ -61,6 +61,6 @@ def exact(
         return law, given
     augmentation = given or Augmentation(tangential=isinstance(law, Friction))
     if isinstance(law, Friction):
-        law = AdhesionAndFriction(Adhesion(stiffness=1.0), law)
+        law = AdhesionAndFriction(numerical_adhesion(law, 1.0), law)
     # multipliers take penalties that suit the bodies, whatever these are
     return ContactLaw(NormalLaw(penalty=1.0), law), augmentation

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from anisocontact.contact.field_axes import OFF, distances
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.sharp_edges import SMOOTH
-from anisocontact.interface.contact_law import AdhesionAndFriction
 
 #: Size of the facets of the slave over those of the master beyond which points between which
 #: something of the master fits are worth a word; where nothing touches, already at MISSED.
@@ -292,71 +291,6 @@ def pressed_aside(contacts: Sequence[Contact]) -> list[str]:
                 "increments; round the edge by a facet or so (`rounding` of a profile)"
             )
     return found
-
-
-def jumping_rules(contacts: Sequence[Contact]) -> list[str]:
-    """Contacts whose sliding rule lets tangential forces jump.
-
-    With isotropic stiffness slip of a slip ellipse relieves the yield function everywhere where
-    the symmetric part of F K is positive definite, docs/theory/sliding-rules.md. The force of
-    `explicit` does not turn at once where sliding begins if B F is isotropic,
-    docs/theory/errata.md.
-
-    Returns:
-        A line for each of them.
-    """
-    return [
-        f"contact of {' with '.join(one.groups)}: {text}"
-        for one in contacts
-        if not one.interface.tangential.in_python and (text := _jump(one.interface.tangential))
-    ]
-
-
-def _jump(law: AdhesionAndFriction) -> str:
-    """How forces of a law jump, in words; empty if they do not."""
-    found = _JUMPS.get(law.sliding_rule)
-    if found is None:
-        return ""
-    stiffness = np.array(law.adhesion.named[1].get("stiffness", (1.0, 1.0)))
-    mu = np.array(law.friction.named[1].get("coefficients", (1.0, 1.0)))
-    jumps, text = found
-    return text if mu.all() and jumps(law, stiffness, mu) else ""
-
-
-def _without_steady_slip(law: AdhesionAndFriction, stiffness: Floats, mu: Floats) -> bool:
-    """Whether a slip ellipse leaves directions without steady slip; asked of isotropic adhesion."""
-    if len(set(stiffness)) > 1:
-        return False
-    rule = law.friction.rule[1]
-    (angle,), axes = rule["slip_angle"], np.array(rule["slip_axes"])
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    slope = (turn * axes**-2.0) @ turn.T * mu[::-1, None] ** 2  # F K times the squares of both
-    return bool(np.linalg.eigvalsh(slope + slope.T)[0] <= 0.0)
-
-
-def _turns_at_onset(law: AdhesionAndFriction, stiffness: Floats, mu: Floats) -> bool:
-    """Whether the trial force T and B F T, that of `explicit`, have other directions."""
-    return bool(np.ptp(stiffness / mu**2) > _SAME * np.max(stiffness / mu**2))
-
-
-#: Difference of two numbers that are meant to be the same, relative.
-_SAME = 1e-6
-#: Rules whose forces may jump, whether they do, and what the user is told.
-_JUMPS: dict[str, tuple[Callable[[AdhesionAndFriction, Floats, Floats], bool], str]] = {
-    "slip-ellipse": (
-        _without_steady_slip,
-        "slip_axes and slip_angle are so far from the ellipse of friction that slip in some "
-        "directions raises the tangential force it should relieve: points stick there and jump, "
-        "and increments may not converge, least of all with penalties at slave nodes",
-    ),
-    "explicit": (
-        _turns_at_onset,
-        "with sliding_rule = 'explicit' tangential forces turn at once where sliding begins, as "
-        "stiffnesses of adhesion are not in proportion to the squares of the coefficients: "
-        "increments may have no equilibrium, and then do not converge; with 'maximum-dissipation' "
-        "nothing jumps",
-    ),
-}
 
 
 def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[str]:

@@ -22,6 +22,7 @@ from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.interface import VECTOR_FORMS, ContactLaw, Interface, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
+from anisocontact.laws import EXPLICIT
 from anisocontact.rigid import RigidBody
 
 #: Laws whose penalties can be augmented.
@@ -44,8 +45,6 @@ ROUNDING = 1e-3
 FAR = 1e8
 #: Least way of a gap that closes, as a share of the gap.
 SMALLEST = 1e-9
-#: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
-_EXPLICIT = "explicit"
 
 
 def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
@@ -85,7 +84,7 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         )
     if augmentation.multipliers == NEWTON and not simultaneous(augmentation, law):
         raise InputError(
-            f'"{NEWTON}" given, the sliding rule "{_EXPLICIT}" needs "uzawa" or "auto"',
+            f'"{NEWTON}" given, the sliding rule "{EXPLICIT}" needs "uzawa" or "auto"',
             "multipliers",
         )
 
@@ -103,7 +102,8 @@ def simultaneous(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     """Whether a law lets its multipliers be found together with the displacements."""
     if not augmentation.tangential or law.tangential.in_python:
         return True
-    return law.tangential.sliding_rule != _EXPLICIT
+    # its history is another force than the one that acts: no fixed point of a step
+    return law.tangential.sliding_rule != EXPLICIT
 
 
 class Multipliers:

@@ -16,9 +16,11 @@ from anisocontact.laws.domain import (
     force_domain,
 )
 from anisocontact.laws.domain_figures import draw_force_plane, draw_tangent_plane
+from anisocontact.laws.numerical_adhesion import EXPLICIT, numerical_adhesion
 from anisocontact.laws.sliding import Slide, slide
 
 __all__ = [
+    "EXPLICIT",
     "SIDES",
     "Adhesion",
     "Carried",
@@ -33,5 +35,6 @@ __all__ = [
     "draw_force_plane",
     "draw_tangent_plane",
     "force_domain",
+    "numerical_adhesion",
     "slide",
 ]
