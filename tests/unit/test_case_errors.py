@@ -34,7 +34,7 @@ WRONG = [
     ("penalty = 1e4", 'penalty = "big"', "contact[0].normal.penalty", '"auto"'),
     # rounding of positions would be a force: states far from equilibrium would be taken for one
     ("penalty = 1e4", "penalty = 1e18", "contact 'block.bottom on plate'.normal.penalty",
-     "1e+18 given, must be at most "),
+     "a stiffness of 1e+18, must be at most "),
     ("[4e3, 1e3]", "[1e18, 1e3]", "contact 'block.bottom on plate'.adhesion.stiffness", "at most"),
     ("normal = { penalty = 1e4 }", 'method = "augmented"\ntolerance = 2', "contact[0].tolerance",
      "2.0 given, must be > 0 and < 1"),

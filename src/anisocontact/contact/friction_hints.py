@@ -11,8 +11,8 @@ from anisocontact.contact.contact import Contact
 from anisocontact.interface.contact_law import AdhesionAndFriction
 from anisocontact.laws import EXPLICIT
 
-#: Ratio of two coefficients of friction below which increments fail: at 3e-4 a block that is pressed
-#: and dragged is solved by all methods, at 3e-5 by some, at 3e-6 by none.
+#: Ratio of two coefficients of friction below which increments fail: a block that is pressed and
+#: dragged is solved by all methods at 3e-4, by some at 3e-5, by none at 3e-6.
 THIN = 1e-4
 
 
@@ -108,5 +108,3 @@ _JUMPS: dict[str, tuple[Callable[[AdhesionAndFriction, Floats, Floats], bool], s
         "nothing jumps",
     ),
 }
-
-

@@ -28,7 +28,8 @@ def check_rounding(contact: Contact) -> None:
     for field, stiffness in contact.given_stiffnesses().items():
         if stiffness * far * ROUND_OFF > most > 0.0:
             raise InputError(
-                f"{stiffness:.3g} given, must be at most {most / (far * ROUND_OFF):.2g}: beyond it "
-                f"rounding of positions, {far:.3g} from the origin, makes forces",
+                f"a stiffness of {stiffness:.3g}, must be at most {most / (far * ROUND_OFF):.2g}: "
+                f"beyond it rounding of positions, {far:.3g} from the origin, makes forces; a mesh "
+                "nearer to the origin has less of it",
                 f"contact {contact.name!r}.{field}",
             )
