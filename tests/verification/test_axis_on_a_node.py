@@ -10,10 +10,10 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
-from anisocontact.contact.hints import on_field_axes
+from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.interface import AdhesionAndFriction, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import Body, BoxSpec, build_box, build_mesh, make_shape
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
@@ -93,7 +93,7 @@ def test_an_arbitrary_direction_is_told(slave, master, line):
     rings = make_directions("polar", axis=((0, 0, 0), (0, 0, 1)), angle=0.0)
     law = Friction(coefficients=MU, directions=rings)
     contact = Contact(build_box(boxes), "block.bottom", "base.top", law)
-    told = on_field_axes([contact])
+    told = doubtful_fields([contact])
     assert len(told) == bool(line)
     assert all(f"{line} on the axis of a direction field" in text for text in told)
 
@@ -112,3 +112,26 @@ def test_what_has_no_such_part_stays_as_it_is():
     assert [one.field for one in new.carried] == [fields[0], fields[2], None]
     assert new.carried[1].on == "slave"
     assert new.surface is interface.surface
+
+
+@pytest.mark.parametrize(("pitch", "told"), [(6.0, 1), (-6.0, 0)])
+def test_a_spiral_along_a_flank_is_told(pitch, told):
+    """Requirement: on the flank of a square thread every line has the pitch of the thread, and a
+    spiral of that pitch has no direction; one of the other hand has, and what can be done is said.
+
+    Source: the helicoid z = H phi / 2 pi is the surface itself. A flank of facets of 10 degrees had
+    the friction across it, without a word.
+    """
+    sizes = {"inner": 8, "outer": 10, "length": 1, "start": 0.0, "end": 4.0}
+    nut = build_mesh([Body("nut", make_shape("ring", cells=(1, 24, 1), **sizes))])
+    x = nut.mesh.geometry.x
+    x[:, 2] += 6.0 * (np.arctan2(x[:, 1], x[:, 0]) % (2.0 * np.pi)) / (2.0 * np.pi)
+    grooves = make_directions("spiral", axis=((0, 0, 0), (0, 0, 1)), pitch=pitch)
+    law = ContactLaw(
+        NormalLaw(penalty=1e3),
+        AdhesionAndFriction(Adhesion(stiffness=1e3), Friction(coefficients=MU, directions=grooves)),
+    )
+    plane = make_surface("plane", point=(0, 0, -9), normal=(0, 0, 1))
+    found = doubtful_fields([Contact(nut, "nut.bottom", plane, law)])
+    assert len(found) == told
+    assert all("100% of the slave" in text and 'kind = "polar"' in text for text in found)

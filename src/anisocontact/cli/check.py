@@ -133,13 +133,14 @@ def _rigid_bodies(built: Built) -> Iterator[str]:
 def _hints(built: Built) -> Iterator[str]:
     """What is worth a note, and what is hardly meant; collective."""
     from anisocontact.contact import doubtful_sides
+    from anisocontact.contact.field_hints import doubtful_fields
     from anisocontact.contact.friction_hints import doubtful_friction
-    from anisocontact.contact.hints import on_field_axes, uneven
+    from anisocontact.contact.hints import uneven
 
     contacts = built.problem.contacts
     for text in uneven(contacts):
         yield f"note      {text}"
-    doubts = (*doubtful_sides(contacts), *doubtful_friction(contacts), *on_field_axes(contacts))
+    doubts = (*doubtful_sides(contacts), *doubtful_friction(contacts), *doubtful_fields(contacts))
     for text in (*built.doubts(), *built.solver.cautions, *doubts):
         yield f"warning   {text}"
 

@@ -7,13 +7,12 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.facet_mesh import facet_areas, node_positions
-from anisocontact.contact.field_axes import OFF, distances
+from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.sharp_edges import SMOOTH
@@ -33,8 +32,6 @@ LEVELLED = 2.0
 MATCHING = 0.1
 #: Share of the nodes of the slave that do, from which on they do.
 MATCHED = 0.5
-#: Share of the area of a slave whose friction has an arbitrary direction that is worth a word.
-UNCERTAIN = 1e-3
 
 
 def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[str]:
@@ -146,46 +143,6 @@ def _angles(contact: Contact) -> str:
 
 #: What an angle of a direction field means on the other side.
 _MIRRORED = "angles of its directions are about the normal of the master: change their signs then"
-
-
-def on_field_axes(contacts: Sequence[Contact]) -> list[str]:
-    """Contacts with nodes on the axis of a polar or spiral field, where there is no direction.
-
-    They have that of an axis beside them, see `off_axes`. Collective.
-
-    Args:
-        contacts: The contacts.
-
-    Returns:
-        A line for each contact and axis.
-    """
-    found = []
-    for contact in contacts:
-        fields = [one.field.named[1] for one in contact.interface.carried if one.field is not None]
-        for axis in dict.fromkeys(tuple(values["axis"]) for values in fields if "axis" in values):
-            where = _on_axis(contact, np.array(axis))
-            if where:
-                found.append(
-                    f"contact of {' with '.join(contact.groups)}: {where} on the axis of a "
-                    "direction field, where there is no direction: an arbitrary one is taken, and "
-                    "that part of the friction is uncertain; finer facets make it smaller, an axis "
-                    "off the nodes avoids it"
-                )
-    return found
-
-
-def _on_axis(contact: Contact, axis: Floats) -> str:
-    """What lies where an axis was put beside it, in words; empty if nothing does."""
-    near, points = 2.0 * OFF * contact.facet_size, contact.slave_points.quadrature
-    own = distances(axis, points.reference) <= near
-    x, met = node_positions(contact.space), contact.nodes_of_groups[1:]
-    opposite = sum(int((distances(axis, x[nodes]) <= near).sum()) for nodes in met)
-    local = np.array([own.sum(), points.areas[own].sum(), points.areas.sum(), opposite])
-    count, area, all_of_it, opposite = contact.space.mesh.comm.allreduce(local)
-    share = (area if count else opposite and contact.master_size**2) / all_of_it
-    if share < UNCERTAIN:
-        return ""
-    return f"{'slave points' if count else 'nodes of the master'} with {share:.2g} of its area lie"
 
 
 #: What tetrahedra of order 1 do to pressures, docs/verification/mortar.md.
@@ -341,7 +298,7 @@ def warn_of(contacts: Sequence[Contact]) -> None:
     Args:
         contacts: The contacts, as of `doubtful_sides`.
     """
-    _warn([*doubtful_sides(contacts), *on_field_axes(contacts)])
+    _warn([*doubtful_sides(contacts), *doubtful_fields(contacts)])
 
 
 def warn_of_overlaps(contacts: Sequence[Contact]) -> None:

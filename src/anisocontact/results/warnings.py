@@ -8,11 +8,11 @@ from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
+from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.contact.friction_hints import doubtful_friction
 from anisocontact.contact.hints import (
     MISSED,
     faceted,
-    on_field_axes,
     overlapping,
     pressed_aside,
 )
@@ -55,7 +55,7 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         (contact, _pair(entry), entry["facet_size"])
         for contact, entry in zip(contacts, shown, strict=True)
     )
-    lines = [*doubtful_sides(contacts), *doubtful_friction(contacts), *on_field_axes(contacts)]
+    lines = [*doubtful_sides(contacts), *doubtful_friction(contacts), *doubtful_fields(contacts)]
     return [*lines, *overlapping(pairs, "adjust = true")]
 
 
