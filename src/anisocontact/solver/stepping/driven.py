@@ -15,10 +15,10 @@ from anisocontact.solver.terms.free_modes import ConnectedBody
 
 @dataclass(frozen=True)
 class Driven:
-    """A body that loads may drive along its contacts.
+    """A body that loads may drive along its contacts, or several as one.
 
     Attributes:
-        name: In words.
+        names: In words, of each.
         contacts: Its contacts, each with 1 where the body is the slave, and -1 where the master.
         centre: Point that moments are about, (3,), length.
         size: Of the body, length.
@@ -26,10 +26,11 @@ class Driven:
         load: Force and moment over the size, (6,), at the fraction that is looked at.
         before: The same in the accepted state.
         loads: Sums of `f_i (x - centre)_j` over them, and of `f_i`, at that fraction, (3, 4).
+        loads_before: The same in the accepted state.
         rigid: Whether it is a rigid surface.
     """
 
-    name: str
+    names: Sequence[str]
     contacts: Sequence[tuple[Contact, float]]
     centre: Floats
     size: float
@@ -37,7 +38,18 @@ class Driven:
     load: Floats
     before: Floats
     loads: Floats
+    loads_before: Floats
     rigid: bool = False
+
+    @property
+    def name(self) -> str:
+        """All its names."""
+        return " and ".join(self.names)
+
+    @property
+    def parts(self) -> frozenset[str]:
+        """Its names as a set."""
+        return frozenset(self.names)
 
 
 def driven(problem: Problem, fraction: float, now: float) -> list[Driven]:
@@ -60,7 +72,7 @@ def deformable(problem: Problem, fraction: float, now: float) -> Iterator[Driven
         problem.loads.set_load_factor(problem.load_factor, problem.dt)
         sides = [body.sides(contact) for contact in free.contacts]
         yield Driven(
-            f"body {body.name!r}",
+            [f"body {body.name!r}"],
             [
                 (contact, 1.0 if slave else -1.0)
                 for contact, (slave, *masters) in zip(free.contacts, sides, strict=True)
@@ -69,9 +81,9 @@ def deformable(problem: Problem, fraction: float, now: float) -> Iterator[Driven
             body.centre,
             body.size,
             free.left,
-            _wrench(sums[0], body.size),
-            _wrench(sums[1], body.size),
-            sums[0],
+            wrench(sums[0], body.size),
+            wrench(sums[1], body.size),
+            *sums,
         )
 
 
@@ -91,8 +103,13 @@ def _sums(force: Floats, moment: Floats, arm: Floats) -> Floats:
     return np.column_stack([couple + np.outer(force, arm), force])
 
 
-def _wrench(loads: Floats, size: float) -> Floats:
-    """As of `Driven.load`, of its `loads`."""
+def wrench(loads: Floats, size: float) -> Floats:
+    """As of `Driven.load`, of its `loads`.
+
+    Args:
+        loads: Sums as of `Driven.loads`, (3, 4).
+        size: Of the body, length.
+    """
     turn = (loads[:, :3] - loads[:, :3].T)[[2, 0, 1], [1, 2, 0]]
     return np.concatenate([loads[:, 3], turn / size])
 
@@ -107,14 +124,16 @@ def _rigid(problem: Problem, fraction: float, now: float) -> Iterator[Driven]:
         size = problem.rigid.length_of_turns(body)
         scale = np.repeat([1.0, 1.0 / size], 3)
         loads = [problem.rigid.load(body, at) * scale for at in (fraction, now)]
+        sums = [_sums(load[:3], load[3:] * size, np.zeros(3)) for load in loads]
         yield Driven(
-            f"rigid body {body.name!r}",
+            [f"rigid body {body.name!r}"],
             [(contact, -1.0) for contact in contacts],
             body.position,
             size,
             np.eye(6)[free],
             loads[0],
             loads[1],
-            _sums(loads[0][:3], loads[0][3:] * size, np.zeros(3)),
+            sums[0],
+            sums[1],
             rigid=True,
         )

@@ -17,6 +17,7 @@ import scipy
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
+from anisocontact.solver.stepping.chains import chains
 from anisocontact.solver.stepping.driven import Driven, deformable, driven
 from anisocontact.solver.stepping.limit_load import Limit, PressedPoints, limit
 from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
@@ -82,10 +83,7 @@ def too_much_load(
         by: Contact that has to be the only one that holds the body, which may rest further on, or
             has not come near the limit; any if left out, and none of these.
     """
-    bodies = driven(problem, fraction, now)
-    if by is not None:
-        bodies = [one for one in bodies if all(c is by for c, _ in one.contacts)]
-    found = _found(problem, bodies, over)
+    found = _found(problem, driven(problem, fraction, now), over, by=by)
     return [one for one in found if one.told or by is not None]
 
 
@@ -130,10 +128,25 @@ def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:
 
 
 def _found(
-    problem: Problem, bodies: Iterable[Driven], over: float = TOO_MUCH, soon: bool = False
+    problem: Problem,
+    bodies: Iterable[Driven],
+    over: float = TOO_MUCH,
+    soon: bool = False,
+    by: Contact | None = None,
 ) -> list[Overload]:
-    found = (_overload(problem, one, over, soon) for one in bodies)
-    return [one for one in found if one is not None]
+    """Of bodies and of their chains, but for those around a body that is told already."""
+    single = list(bodies)
+    found: list[Overload] = []
+    told: list[frozenset[str]] = []
+    for body in [*single, *chains(single)]:
+        elsewhere = by is not None and any(contact is not by for contact, _ in body.contacts)
+        if elsewhere or any(parts <= body.parts for parts in told):
+            continue
+        one = _overload(problem, body, over, soon)
+        if one is not None:
+            found.append(one)
+            told += [body.parts] if one.told else []
+    return found
 
 
 def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overload | None:
