@@ -65,6 +65,12 @@ def _script(residual: Any, with_j: bool = False) -> object:
     return ContactProblem(form, u, J=form if with_j else None)
 
 
+def _touching(residual: Any, model: Model) -> object:
+    u = fem.Function(model.space)
+    contact = Contact(model, "block.bottom", PLANE, Friction(coefficients=0.3))
+    return ContactProblem(residual(u, ufl.TestFunction(model.space)), u, contacts=[contact])
+
+
 @pytest.fixture(scope="module")
 def model() -> Model:
     lower = BoxSpec((0, 0, -1), (1, 1, 1), (1, 1, 1))
@@ -214,6 +220,14 @@ WRONG = {
     "a residual of something else": (
         lambda m: _script(lambda u, v: ufl.inner(fem.Function(u.function_space), v) * ufl.dx),
         "F: does not depend on u: the residual at the function u needed",
+    ),
+    "a residual of the wrong sign": (
+        lambda m: _touching(lambda u, v: -ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx, m),
+        "F: a stiffness of -",
+    ),
+    "a residual that is no number": (
+        lambda m: _touching(lambda u, v: ufl.inner(ufl.sqrt(u[0] - 1.0) * u, v) * ufl.dx, m),
+        "F: a stiffness of nan at contact 'block.bottom'",
     ),
     "a test function of another space": (
         lambda m: _script(lambda u, v: ufl.inner(u, ufl.TestFunction(_finer(u))) * ufl.dx),

@@ -156,8 +156,17 @@ class ContactPair:
         Args:
             diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
                 (nodes, 3), force/length.
+
+        Raises:
+            InputError: They are not stiff at all, or less than that.
         """
         self.body_stiffness = self.master.stiffness(diagonal)
+        if not 0.0 <= self.body_stiffness < np.inf:
+            raise InputError(
+                f"a stiffness of {self.body_stiffness:.3g} at contact {self.name!r}, a residual "
+                "that grows with u needed",
+                "F",
+            )
         self.master_yields = self.master.yields(diagonal)
         self.trials.multipliers.suit(self.body_stiffness)
         self._begin()
