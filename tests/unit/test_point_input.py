@@ -135,6 +135,13 @@ def test_a_law_whose_tangent_is_not_finite_stops_the_drive() -> None:
         drive(interface, path)
 
 
+def test_a_push_of_a_point_that_nothing_presses_says_so() -> None:
+    """No force moves it along: the stop said a residual of 1e-21 beside forces of 0, no more."""
+    push = Push((0.866, 0.5, 0), travel=[0, 1e-3], start=(0, 0, 0), pressure=0.0, increments=20)
+    with pytest.raises(StoppedError, match="no forces: nothing presses the point, a pressure"):
+        drive(_interface(), push)
+
+
 def test_load_that_does_not_fit_the_surface() -> None:
     """A start without a closest point is bad input; a path into it stops the drive."""
     with pytest.raises(InputError, match="load: it begins at"):

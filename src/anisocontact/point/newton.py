@@ -14,6 +14,8 @@ TOLERANCE = 1e-12
 MOST_ROUNDING = 1e-6
 #: Iterations before the step is cut.
 MOST_ITERATIONS = 40
+#: Why a point without any force does not come to rest.
+UNPRESSED = "no forces: nothing presses the point, a pressure, or a load towards the surface needed"
 
 
 def solve(balance: PointBalance, guess: Floats) -> tuple[Trial, int]:
@@ -39,10 +41,8 @@ def solve(balance: PointBalance, guess: Floats) -> tuple[Trial, int]:
             return trial, iteration  # as near as rounding lets it come
         trial = new
     size = float(np.linalg.norm(trial.residual))
-    raise StepError(
-        f"no equilibrium after {MOST_ITERATIONS} iterations, residual {size:.3g}, "
-        f"forces {trial.scale:.3g}"
-    )
+    why = f"residual {size:.3g}, forces {trial.scale:.3g}" if trial.scale else UNPRESSED
+    raise StepError(f"no equilibrium after {MOST_ITERATIONS} iterations, {why}")
 
 
 def _rounding(trial: Trial) -> float:
