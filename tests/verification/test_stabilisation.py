@@ -310,6 +310,28 @@ def test_no_springs_where_contact_holds() -> None:
     assert iterations[0] < iterations[1] / 1.5
 
 
+def test_contact_is_trusted_again() -> None:
+    """Two attempts fail in a step in which a block sticks: one on springs, one without later on.
+
+    Requirement: springs take up energy in the increment after the first failure and in the two
+    after the second one, as contact was trusted in vain in between, and in no other.
+    """
+    problem = _block(0.0)
+    stabilisation, taken = problem.stabilisation, [0.0]
+    steps = [_loads()[0], Step("shear", 6, traction={"block.top": {"x": 2.0}})]
+    for number, accepted in enumerate(Solver(problem, steps).run(), 1):
+        taken.append(accepted.energies["stabilisation"])
+        if number == 3:
+            stabilisation.careful = True
+        if number == 5:
+            stabilisation.distrust()
+        if number == 6:  # a run that is restarted here goes on alike
+            kept = stabilisation.persistent()
+            stabilisation.distrust()
+            stabilisation.restore(kept)
+    assert (np.diff(taken)[3:] > 0.0).tolist() == [True, False, True, True, False]
+
+
 def test_sticking_without_stiffness_holds_nothing() -> None:
     """Pressed by its face, with adhesion along x alone: points stick, but y meets no force.
 

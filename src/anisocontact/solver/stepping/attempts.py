@@ -236,7 +236,8 @@ class Attempts:
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []
-            problem.stabilisation.careful |= not way.spare
+            if not way.spare:
+                problem.stabilisation.distrust()
             if refusal is not None:
                 self._final = refusal.final
                 return replace(result, reason=refusal.reason), list(refusal.culprits)

@@ -61,8 +61,9 @@ class Stabilisation(Term):
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
         released: What `flow` has dissipated since the start, force times length.
-        careful: Whether bodies get springs also where they stick: until the step ends, or bodies on
-            springs of their own are caught.
+        careful: Whether bodies get springs also where they stick: until the step ends, bodies on
+            springs of their own are caught, or contact has held all through a few accepted parts,
+            see `distrust`.
         landed: Whether a body was in the air before the accepted state: how it has moved says
             nothing of the next part.
         flow: What carries the bodies on where their equilibrium is lost.
@@ -94,7 +95,8 @@ class Stabilisation(Term):
         self._before: dict[int, tuple[Flags, Floats]] = {}
         self._fell = self._driven = False
         self._where: Flags | None = None
-        self._caught = False
+        self._caught = self._holding = False
+        self._patience, self._sound = 1, 0
         self._held: list[Supported] = []
         self._frames: list[SupportedFrame] = []
         self._begun: Floats = np.zeros((0, 3))
@@ -138,6 +140,18 @@ class Stabilisation(Term):
     def clear(self) -> None:
         """Nothing is free."""
         self._free, self._loose, self.notes, self.careful = [], [], [], False
+        self._patience, self._sound = 1, 0
+
+    def distrust(self) -> None:
+        """Bodies get springs in the next attempts, since one has failed.
+
+        Contact is trusted again once it has held all bodies in as many accepted parts as
+        `_patience` says. They are twice as many each time that it is trusted in vain: so where
+        springs are needed all through a step, few attempts without them are lost.
+        """
+        if self.trusts and not self.careful:
+            self._patience *= 2
+        self.careful, self._sound = True, 0
 
     @property
     def contact_alone(self) -> bool:
@@ -301,13 +315,12 @@ class Stabilisation(Term):
             u: Displacement of the local nodes, (nodes, 3), length.
         """
         if self.trusts and self.doubtful(u):
-            self.careful = True
+            self.distrust()
             return "contact alone does not hold all bodies"
         lost = self.lost(u)
         # a body on springs has been caught where contact and springs have stiffness again
-        self._caught = (
-            self.careful and not lost and all([f.sprung and f.holds() for f in self._free])
-        )
+        self._holding = self.careful and not lost and all([f.holds() for f in self._free])
+        self._caught = self._holding and all(f.sprung for f in self._free)
         return lost
 
     def doubtful(self, u: Floats) -> bool:
@@ -401,7 +414,8 @@ class Stabilisation(Term):
         self.energy += self._spent
         self.released += self.flow.spent
         self._spent = 0.0
-        self.careful = self.careful and not self._caught
+        self._sound += self._holding
+        self.careful = self.careful and not (self._caught or self._sound >= self._patience)
         self.landed = self._fell
         if self.flow.flows:
             steps = self.flow.steps
@@ -415,12 +429,14 @@ class Stabilisation(Term):
 
     @override
     def persistent(self) -> Arrays:
-        return {"stabilisation": np.array([self.energy, self.released, self.careful])}
+        trust = [self.careful, self._patience, self._sound]
+        return {"stabilisation": np.array([self.energy, self.released, *trust])}
 
     @override
     def restore(self, kept: Arrays) -> None:
-        energy, released, careful = kept["stabilisation"].tolist()
-        self.energy, self.released, self.careful = energy, released, bool(careful)
+        self.energy, self.released, *trust = kept["stabilisation"].tolist()
+        careful, self._patience, self._sound = map(int, trust)
+        self.careful = bool(careful)
 
     def _add(self, free: FreeBody, step: str, now: bool) -> None:
         text = f"body {free.body.name!r} is free to move: {free.modes}"
