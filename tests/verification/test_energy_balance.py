@@ -56,7 +56,7 @@ def test_a_jump_over_the_limit_of_friction(
 
 
 def _only_flows(monkeypatch: pytest.MonkeyPatch) -> None:
-    def flowing(self: Attempts, searching: Any, full: Any, softer: bool) -> list[Any]:
+    def flowing(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
         return [replace(full, flowing=True)]
 
     monkeypatch.setattr(Attempts, "_ways", flowing)

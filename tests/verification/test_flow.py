@@ -28,7 +28,7 @@ STRATEGIES = ["direct", "condensed", "iterative"]
 def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every attempt starts from the accepted state and flows."""
 
-    def ways(self: Attempts, searching: Any, full: Any, softer: bool) -> list[Any]:
+    def ways(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
         return [replace(full, flowing=True)]
 
     monkeypatch.setattr(Attempts, "_ways", ways)
@@ -91,19 +91,25 @@ def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch)
         assert springs.flow.stiffness == 0.0
 
 
+def _named(way: Any) -> str:
+    """What an attempt is, in a word."""
+    kinds = [name for name in ("flowing", "damped", "graded") if getattr(way, name)]
+    return {"flowing": "flow"}.get(kinds[0], kinds[0]) if kinds else "plain"
+
+
 def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only small parts flow, after the damped attempt, and not with `stabilisation = false`."""
     tried: list[str] = []
     attempt = Attempts._attempt
 
     def alternating(self: Attempts, way: Any) -> Any:
-        tried.append("flow" if way.flowing else "damped" if way.damped else "plain")
+        tried.append(_named(way))
         result, _ = attempt(self, way)
         return result, [attempts.Culprit("flipping", (0.0, 0.0, 0.0), "")]
 
     monkeypatch.setattr(Attempts, "_attempt", alternating)
-    three = ["plain", "plain", "damped"]
-    for stabilised, ways in ((True, [*three, *three, "flow"]), (False, [*three, *three])):
+    four = ["plain", "plain", "graded", "damped"]
+    for stabilised, ways in ((True, [*four, *four, "flow"]), (False, [*four, *four])):
         tried.clear()
         block = fe.block(fe.interface(), cells=(2, 2, 1))
         block.problem.stabilisation.enabled = stabilised

@@ -274,7 +274,7 @@ def test_a_state_on_the_other_side_is_not_accepted(
     problem = _problem("plane")
     over = _state(problem, lambda x: x * [1.0, -1.0, -1.0] + [0.0, 1.0, -1e-3]).array.copy()
 
-    def thrown(self: Newton, x: Vec, *_: Any) -> NewtonResult:
+    def thrown(self: Newton, x: Vec, *_: Any, **__: Any) -> NewtonResult:
         x.array[:] = over
         return NewtonResult(1, [0.0], "")
 

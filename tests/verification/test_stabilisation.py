@@ -259,9 +259,9 @@ def test_a_state_off_everything_is_refused(monkeypatch: pytest.MonkeyPatch) -> N
     solve = Newton.solve
     throws = [False]
 
-    def thrown(self: Newton, x: Vec, *options: Any) -> NewtonResult:
+    def thrown(self: Newton, x: Vec, *options: Any, **named: Any) -> NewtonResult:
         if not throws[0]:
-            return solve(self, x, *options)
+            return solve(self, x, *options, **named)
         x.array[:] += np.tile([0.0, 0.0, 1.0], len(x.array_r) // 3)
         return NewtonResult(1, [0.0], "")
 

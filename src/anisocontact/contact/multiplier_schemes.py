@@ -13,18 +13,20 @@ from anisocontact.contact.multipliers import (
     check,
     simultaneous,
 )
-from anisocontact.contact.nested_uzawa import NestedUzawa
+from anisocontact.contact.nested_uzawa import Graded, NestedUzawa
 from anisocontact.contact.semismooth import Semismooth, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Schemes of an increment, the usual one and what is tried where that fails: with smaller
-#: penalties, in cycles, and with penalties alone where multipliers are not required.
-USUAL, SOFTER, IN_CYCLES, PENALTIES = "usual", "softer", "in cycles", "penalties"
+#: penalties, in cycles, in such that begin with soft penalties, and with penalties alone where
+#: multipliers are not required.
+USUAL, SOFTER, IN_CYCLES, GRADED = "usual", "softer", "in cycles", "graded"
+PENALTIES = "penalties"
 
 #: Their classes, by `Augmentation.multipliers`.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
-    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: NestedUzawa},
+    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: NestedUzawa, GRADED: Graded},
     UZAWA: {USUAL: Uzawa},
 }
 

@@ -7,14 +7,14 @@ violations away in a few corrections. Where it does not, cycles go on from where
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar, override
 
 from anisocontact.base.array_types import Flags
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.multipliers import Multipliers
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.contact.semismooth import Semismooth
-from anisocontact.contact.uzawa import Uzawa
+from anisocontact.contact.uzawa import RAISE, Mixing, Uzawa
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
@@ -32,7 +32,12 @@ class NestedUzawa(Uzawa):
         size: Facet size, length.
         penalties: Normal penalty and least tangential stiffness, stress/length.
         comm: Communicator of the mesh.
+
+    Attributes:
+        first: Share of the penalties that suit the bodies with which the first cycle is solved.
     """
+
+    first: ClassVar[float] = 1.0
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
@@ -44,7 +49,7 @@ class NestedUzawa(Uzawa):
 
     def suit(self, stiffness: float) -> None:
         """Bring the penalties to the stiffness of the bodies: `PENALTY_FACTOR` times of it."""
-        Multipliers.suit(self, PENALTY_FACTOR * stiffness)
+        Multipliers.suit(self, self.first * PENALTY_FACTOR * stiffness)
         self._last.suit(stiffness)
 
     @property
@@ -82,3 +87,29 @@ class NestedUzawa(Uzawa):
             return super().soften(start)
         self._ends = False
         return self._next
+
+
+class Graded(NestedUzawa):
+    """The same from penalties far softer than what bodies are made of: continuation in the penalty.
+
+    Bending lets a slender body give way much more than its material does. The active set of stiff
+    penalties then changes by a point at the edge of the contact in each correction, wherever that
+    edge is in the end; soft ones spread the pressure over all points that will touch. They
+    are raised with every cycle until they suit the bodies.
+    """
+
+    first: ClassVar[float] = 1e-3
+
+    @override
+    def begin(self, state: State, located: Flags) -> State:
+        start = super().begin(state, located)
+        self._full = self.factor / self.first
+        return start
+
+    @override
+    def _raise(self, correction: float, typical: float) -> None:
+        if self.factor >= self._full or self._waits > 1:
+            super()._raise(correction, typical)
+            return
+        self.factor = min(RAISE * self.factor, self._full)
+        self._raised, self._mixing = True, Mixing(self._comm)

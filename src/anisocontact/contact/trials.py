@@ -320,6 +320,20 @@ class Trials:
         """
         return self._points.at_nodes and self.multipliers.penalised
 
+    @property
+    def by_penalty(self) -> bool:
+        """Whether a penalty alone presses, and no layer is behind it."""
+        alone = self._own is None and self._layer is None
+        return alone and self.interface.penalties()[0] > 0.0
+
+    def soften_laws(self, share: float) -> None:
+        """Answer with a share of the penalties, `by_penalty`; with 1 by the law as it is."""
+        if share == 1.0:
+            laws: AugmentedLaw = self.interface
+        else:
+            laws = self.interface.stiffened(share, share)
+        self._take(laws, laws)
+
     def comply(self, stiffness: float, size: float) -> None:
         """Come to penalties by way of multipliers, see `Compliant`, until `take_away`.
 

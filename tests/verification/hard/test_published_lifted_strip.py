@@ -22,6 +22,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
@@ -67,12 +68,20 @@ options = {{ snes_rtol = 1e-10 }}
 
 
 MULTIPLIERS = 'method = "augmented"'
+POINTS = 'method = "penalty"\npass = "single"'
 PENALTIES = 'method = "penalty"\npass = "mortar"'
 
 
 @pytest.mark.parametrize(
     ("method", "friction", "most"),
-    [(MULTIPLIERS, 0.0, 145), (MULTIPLIERS, 0.3, 212), (PENALTIES, 0.0, 66)],
+    [
+        (MULTIPLIERS, 0.0, 70),
+        (MULTIPLIERS, 0.3, 120),
+        (PENALTIES, 0.0, 66),
+        (PENALTIES, 0.3, 151),
+        (POINTS, 0.3, 102),
+    ],
+    ids=["multipliers", "multipliers-friction", "nodes", "nodes-friction", "points-friction"],
 )
 def test_force_that_lifts(method: str, friction: float, most: int, tmp_path: Path) -> None:
     """One increment, which opens fifty cells at once; with penalties residuals rise and fall."""
@@ -87,3 +96,37 @@ def test_force_that_lifts(method: str, friction: float, most: int, tmp_path: Pat
     free = (24.0 * locked * LIFT / weight) ** 0.25
     assert lifted.reactions["strip.right"][1] == pytest.approx(0.5 * weight * free, rel=1e-3)
     assert lifted.iterations <= most
+
+
+def test_a_script_lifts_it() -> None:
+    """A form of the user's, with friction, in space: no way but by soft penalties ends."""
+    from anisocontact import Adhesion, Friction, Interface, NormalLaw, make_surface
+    from anisocontact.base.fenicsx import fem, ufl
+    from anisocontact.contact import Contact
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.solver import ContactProblem
+
+    length, lift = 20.0, 0.01
+    model = build_box({"strip": BoxSpec((0, 0, 0), (length, 1, HEIGHT), (40, 1, 1))})
+    u, v = fem.Function(model.space), ufl.TestFunction(model.space)
+    strain = ufl.inner(ufl.sym(ufl.grad(u)), ufl.grad(v))
+    form = (YOUNG * strain + WEIGHT * v[2]) * ufl.dx
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    law = Adhesion(stiffness=(2e5, 2e5)), Friction(coefficients=(0.3, 0.3))
+    contact = Contact(model, "strip.bottom", Interface(plane, NormalLaw(penalty=2e5), *law))
+
+    def held(nodes: np.ndarray, axis: int, value: float) -> Any:
+        component = model.space.sub(axis)
+        return fem.dirichletbc(value, (3 * nodes + axis).astype(np.int32), component)
+
+    every = np.arange(len(u.x.array) // 3)
+    bcs = [held(every, 1, 0.0), held(model.nodes("strip.left"), 0, 0.0)]
+    problem = ContactProblem(form, u, bcs=bcs, contacts=[contact])
+    problem.solve()
+    problem.bcs.append(held(model.nodes("strip.right"), 2, lift))
+    problem.solve()
+    weight, bending = WEIGHT * HEIGHT, YOUNG * HEIGHT**3 / 12.0
+    locked = bending + 0.5 * YOUNG * HEIGHT * (length / 40.0) ** 2 / 12.0
+    free = (24.0 * locked * lift / weight) ** 0.25
+    force = contact.resultant()[0][2]
+    assert force == pytest.approx(weight * (length - 0.5 * free), rel=1e-3)

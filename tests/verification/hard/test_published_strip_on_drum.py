@@ -9,9 +9,9 @@ carries all of P. Its end has moved by
 
 Requirement: place and size of what the drum carries, and the way of the end, in one increment that
 closes and opens over half of the strip; with a penalty that lets the strip in by a hundredth of its
-way in a tenth of the iterations. Tolerance: way 0.05 %, with the penalty 0.07 %; force 0.6, 2.6 %;
-place 0.4, 2 %, for a penalty spreads it. Multipliers take 312 iterations with one cut: a strip that
-bends easily is thrown off and on.
+way in a fifth of the iterations. Tolerance: way 0.05 %, with the penalty 0.07 %; force 0.6, 2.6 %;
+place 0.4, 2 %, for a penalty spreads it. Multipliers take 54 iterations, found by penalties raised
+from soft ones: with stiff ones a strip that bends easily is thrown off and on.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ force = {{{{ "strip.right" = {{{{ y = -{LOAD!r} }}}} }}}}
 
 @pytest.mark.parametrize(
     ("normal", "most"),
-    [pytest.param("", 350, marks=pytest.mark.slow), ("normal = { penalty = 100 }", 20)],
+    [("", 60), ("normal = { penalty = 100 }", 20)],
     ids=["exact", "penalty"],
 )
 def test_strip(to_the_end: Callable[..., Any], normal: str, most: int) -> None:
     """Way of the end, and the force where the strip leaves the drum."""
     run = to_the_end(CASE.format(normal=normal))
-    assert len(run.cuts) <= 1
+    assert not run.cuts
     assert sum(one.iterations for one in run.accepted) <= most
     left = LENGTH - BENDS / (LOAD * RADIUS)
     free = LENGTH - left

@@ -7,12 +7,19 @@ from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
-from anisocontact.contact.multiplier_schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
+from anisocontact.contact.multiplier_schemes import (
+    GRADED,
+    IN_CYCLES,
+    PENALTIES,
+    SOFTER,
+    USUAL,
+)
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import INVERTED, Refusal, refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.convergence_diagnostics import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
+from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import Overload
 from anisocontact.solver.stepping.status_watch import StatusWatch
@@ -44,7 +51,7 @@ class Outcome:
         hint: What may be behind the failure, and what to do about it.
         failed: A point at which the laws failed, on the first rank that has one.
         relaxed: Whether penalties hold where no multipliers were found.
-        softer: Whether smaller penalties in the projections led to the multipliers.
+        way: Scheme that led to the multipliers, see `multiplier_schemes`.
         refused: Whether an equilibrium was found that no model of a body holds for.
         ahead: Equilibrium at the end of the part that was refused as points turn too far, or as it
             is beyond an event; smaller parts are on the way to it.
@@ -56,7 +63,7 @@ class Outcome:
     hint: str = ""
     failed: FailedPoint | None = None
     relaxed: bool = False
-    softer: bool = False
+    way: str = USUAL
     refused: bool = False
     ahead: Vec | None = None
 
@@ -84,6 +91,7 @@ class _Attempt:
         multipliers: Way to the multipliers of augmented contacts.
         spare: Whether its failure says nothing of what holds the bodies.
         layered: Whether stiff laws are come to by way of what is easier, see `Continuation`.
+        graded: Whether penalties are raised from soft ones, see `GradedPenalties`.
     """
 
     start: Vec
@@ -94,6 +102,12 @@ class _Attempt:
     multipliers: str = USUAL
     spare: bool = False
     layered: bool = False
+    graded: bool = False
+
+    @property
+    def way(self) -> str:
+        """Scheme of the multipliers, or how penalties are come to."""
+        return GRADED if self.graded else self.multipliers
 
 
 class Attempts:
@@ -103,14 +117,15 @@ class Attempts:
     accepted state with full steps: a line search stops in front of a jump of the law. Both are one
     where nothing is extrapolated and pressures of cells follow corrections in full steps. Where
     adhesion is stiff one with compliant layers comes between them, where penalties are one with
-    multipliers before them, see `Continuation`. Where the status of points alternated, a further
-    one takes a share of each correction: half as much as before where it still alternates, twice as
-    much where it does not. Where that does not help either and the part is small, the last one lets
-    the bodies flow, see `ViscousFlow`. Where a part is tiny, both are tried whatever was in the
-    way. Where multipliers are not required and a cut did not lead to them, penalties come before
-    these last ones. Where contact may hold free bodies without springs, an attempt without them
-    comes before all these. Multipliers that follow every correction have ways of their own, see
-    `_following`.
+    multipliers before them, see `Continuation`. Other penalties are raised from soft ones where
+    both fail, see `GradedPenalties`, and from then on where the first does. Where the status of
+    points alternated, a further one takes a share of each correction: half as much as before where
+    it still alternates, twice as much where it does not. Where that does not help either and the
+    part is small, the last one lets the bodies flow, see `ViscousFlow`. Where a part is tiny, both
+    are tried whatever was in the way. Where multipliers are not required and a cut did not lead to
+    them, penalties come before these last ones. Where contact may hold free bodies without springs,
+    an attempt without them comes before all these. Multipliers that follow every correction have
+    ways of their own, see `_following`.
 
     Args:
         problem: The problem.
@@ -133,6 +148,7 @@ class Attempts:
         self._failed: FailedPoint | None = None
         self._ahead: Vec | None = None
         self._continuation = Continuation(problem, newton)
+        self._graded = GradedPenalties(problem.contacts, newton)
 
     def solve(
         self,
@@ -166,8 +182,8 @@ class Attempts:
             spent += result.iterations
             if not result.reason:
                 result = replace(result, iterations=spent)
-                by = way.multipliers
-                return Outcome(result, relaxed=by == PENALTIES, softer=by == SOFTER)
+                relaxed = way.multipliers == PENALTIES
+                return Outcome(result, relaxed=relaxed, way=way.way)
             # nothing but a smaller part can help
             if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent), ahead=self._ahead)
@@ -189,23 +205,26 @@ class Attempts:
     ) -> list[_Attempt]:
         """Attempts in their order, without the last resorts; arguments as of `solve`."""
         searching, full = _Attempt(first, ratio, full_steps=False), _Attempt(last)
-        ways = self._ways(searching, full, control.softer)
+        ways = self._ways(searching, full, control.way)
         if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
             return ways
         relaxed = [replace(way, multipliers=PENALTIES) for way in self._apart(searching, full)]
         return [*(ways[:1] if control.relaxed else ways), *relaxed]
 
-    def _ways(self, searching: _Attempt, full: _Attempt, softer: bool) -> list[_Attempt]:
+    def _ways(self, searching: _Attempt, full: _Attempt, led: str) -> list[_Attempt]:
         trusts = self._problem.stabilisation.trusts
         stiff, layered = self._continuation.stiff(), replace(full, layered=True)
         if self._problem.contact_term.simultaneous:
             cycles = IN_CYCLES in self._problem.contact_term.ways
-            ways = _following(searching, full, cycles, trusts, softer)
+            ways = _following(searching, full, cycles, trusts, led)
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
                 return [*[layered] * (2 if trusts else 1), *both]
             ways = [both[0], *both] if trusts else both
+            if not stiff and self._graded.contacts:
+                graded = replace(full, graded=True)
+                ways.insert(1 if led == GRADED else len(ways), graded)
         if stiff:
             ways.insert(2 if trusts else 1, layered)
         return ways
@@ -217,7 +236,7 @@ class Attempts:
     def _last_resorts(self, failed: _Attempt, flows: bool) -> list[_Attempt]:
         """What is left to be tried where the status of points alternates, or parts are tiny."""
         if not failed.damped and not failed.flowing:
-            return [replace(failed, damped=True)]
+            return [replace(failed, damped=True, graded=False)]
         if flows and self._problem.stabilisation.enabled and not failed.flowing:
             # bodies that flow from one contact to another find multipliers with smaller penalties
             follows = SOFTER in self._problem.contact_term.ways
@@ -260,6 +279,8 @@ class Attempts:
         problem.contact_term.predict(way.ratio)
         if way.layered:
             return self._continuation.solve(x)
+        if way.graded:
+            return self._graded.solve(x)
         damping = self._damping if way.damped else None
         return self._newton.solve(x, way.full_steps, damping)
 
@@ -291,30 +312,32 @@ class Attempts:
 
 
 def _following(
-    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, softer: bool
+    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, led: str
 ) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
     Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller
-    penalties, then cycles that begin with penalties, where there are any, then shares of
-    corrections with smaller penalties.
+    penalties, then cycles, where there are any, that begin with soft penalties and with penalties
+    that suit the bodies, then shares of corrections with smaller penalties.
 
     Args:
         first: From the extrapolated state.
         last: From the accepted state.
         cycles: Whether multipliers can be found in cycles instead.
-        softer: Whether smaller penalties come first: they led to the last accepted part.
+        led: Scheme that led to the last accepted part: smaller penalties come first then.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
     """
     usual = replace(first, spare=cycles)
-    smaller = replace(usual, multipliers=SOFTER)
+    schemes = [SOFTER, USUAL] if led == SOFTER else [USUAL, SOFTER]
+    if cycles:
+        schemes.append(GRADED)
+    begun = [replace(usual, multipliers=one) for one in schemes]
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
     ways = [again] if trusts or cycles else []
     if trusts and cycles:
         ways.append(again)
     if first.start is not last.start:
         ways.append(replace(last, multipliers=again.multipliers))
-    begun = [smaller, usual] if softer else [usual, smaller]
     return [*begun, *ways, replace(last, multipliers=SOFTER, damped=True)]
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from anisocontact.base.limits import Limits
+from anisocontact.contact.multiplier_schemes import USUAL
 
 #: What is left of a part that failed.
 CUT = 0.25
@@ -34,7 +35,7 @@ class IncrementControl:
         streak: Parts in a row that converged.
         cuts: Number of cuts within this increment.
         relaxed: Whether penalties held in the last part, as no multipliers were found.
-        softer: Whether smaller penalties led to the multipliers of the last part.
+        way: Scheme that led to the multipliers of the last part, see `multiplier_schemes`.
         goal: Share of the increment at which the next part ends, if it is that large; 0 for none.
 
     Example:
@@ -55,7 +56,7 @@ class IncrementControl:
     streak: int = 0
     cuts: int = 0
     relaxed: bool = False
-    softer: bool = False
+    way: str = USUAL
     goal: float = 0.0
 
     @property
@@ -96,16 +97,16 @@ class IncrementControl:
         """Make the next parts no larger than a size, as far as the limits allow."""
         self.size = min(self.size, max(size, self.limits.smallest))
 
-    def advance(self, iterations: int, relaxed: bool = False, softer: bool = False) -> None:
+    def advance(self, iterations: int, relaxed: bool = False, way: str = USUAL) -> None:
         """Go on behind a part that has converged.
 
         Args:
             iterations: Newton iterations that it took.
             relaxed: Whether penalties held in it.
-            softer: Whether smaller penalties led to its multipliers.
+            way: Scheme that led to its multipliers.
         """
         end, self.last = self.end, self.part
-        self.relaxed, self.softer = relaxed, softer
+        self.relaxed, self.way = relaxed, way
         self.done, self.goal = end, 0.0
         self.streak += 1
         if self.streak >= STREAK and iterations <= HARD:

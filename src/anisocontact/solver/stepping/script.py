@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,8 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.hints import warn_of_overlaps
-from anisocontact.contact.multiplier_schemes import IN_CYCLES, SOFTER
+from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES, SOFTER
+from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
 from anisocontact.solver.stepping.script_parts import moved_bodies, script_unknowns
@@ -166,19 +168,33 @@ class ContactProblem:
         return result.iterations
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
-        """Newton's method, with multipliers found in other ways where the usual one fails."""
-        start, contacts = x.copy(), self.system.contact_term
+        """Newton's method, and other ways where that fails."""
+        start = x.copy()
         result = self.newton.solve(x)
-        for way in (SOFTER, IN_CYCLES):
-            if not result.reason or way not in contacts.ways:
-                continue
+        for solve in self._other_ways():
+            if not result.reason:
+                break
             start.copy(x)
-            contacts.roll_back()
-            contacts.take_way(way)
-            again = self.newton.solve(x)
+            self.system.contact_term.roll_back()
+            again = solve(x)
             result = replace(again, iterations=result.iterations + again.iterations)
         start.destroy()
         return result
+
+    def _other_ways(self) -> Iterator[Callable[[Vec], NewtonResult]]:
+        """Ways to multipliers, and to penalties from soft ones."""
+
+        def by_scheme(name: str, x: Vec) -> NewtonResult:
+            self.system.contact_term.take_way(name)
+            return self.newton.solve(x)
+
+        schemes = self.system.contact_term.ways
+        yield from (
+            partial(by_scheme, one) for one in (SOFTER, GRADED, IN_CYCLES) if one in schemes
+        )
+        graded = GradedPenalties(self.contacts, self.newton)
+        if graded.contacts:
+            yield graded.solve
 
     @typed
     def solve_steps(

@@ -249,7 +249,7 @@ class Solver:
             events.accept(done == 1.0)
             self._predictor.accept(part)
             accepted = self._accepted(step, increment, done, outcome, events)
-            control.advance(outcome.iterations, outcome.relaxed, outcome.softer)
+            control.advance(outcome.iterations, outcome.relaxed, outcome.way)
             if events.happened:
                 place.stopped[place.step] = fraction(step, increment, done)
                 control.increment = step.increments + 1
