@@ -14,7 +14,7 @@ def numerical_adhesion(friction: Friction, stiffness: float) -> Adhesion:
     The force of `explicit` turns at once where sliding begins, which leaves no equilibrium to be
     found, unless the stiffnesses are in proportion to the squares of the coefficients, along the
     same axes, docs/theory/sliding-rules.md. Their geometric mean is the stiffness that is asked
-    for, and the elastic slip at the limit of friction on no axis larger than it would be with that.
+    for, and the largest elastic slip at the limit of friction is what it would be with that.
 
     Args:
         friction: The law of friction.
