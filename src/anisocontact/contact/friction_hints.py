@@ -36,6 +36,21 @@ def doubtful_friction(contacts: Sequence[Contact]) -> list[str]:
     ]
 
 
+def wrong_derivatives(contacts: Sequence[Contact]) -> str:
+    """Laws in Python whose derivatives were wrong in the last evaluation; collective.
+
+    Args:
+        contacts: Those whose laws are asked.
+
+    Returns:
+        What is wrong, the same on each rank; empty where nothing is.
+    """
+    every = ((one.name, one.interface.tangential.doubts()) for one in contacts)
+    own = [f"contact {name!r}: {said}" for name, said in every if said]
+    parts = contacts[0].model.mesh.comm.allgather(own) if contacts else []
+    return "; ".join(dict.fromkeys(text for part in parts for text in part))
+
+
 def _thin(contact: Contact) -> str:
     """What coefficients far apart do, in words; empty if they are not."""
     mu = np.array(contact.interface.tangential.friction.named[1].get("coefficients", (1.0, 1.0)))

@@ -131,6 +131,10 @@ class AdhesionAndFriction(CopiedByArguments):
         """Stiffness of adhesion along its axes, or what stands for it in laws without one."""
         return self.adhesion.named[1].get("stiffness", [none])
 
+    def doubts(self) -> str:
+        """Nothing: the derivatives of the core are exact."""
+        return ""
+
     def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
         """What the core finds for a batch; arguments as of `PythonLaw.through`."""
         found = update(raw_state(state), None)

@@ -32,6 +32,7 @@ from anisocontact.interface.tangential_law import (
     evaluate,
     law_stiffness,
 )
+from anisocontact.interface.wrong_slopes import wrong_slopes
 from anisocontact.laws import SIDES, Adhesion, Carried, Friction, NormalLaw
 
 #: How the history enters a step: a law in Python sees it turned to where the point is.
@@ -107,6 +108,7 @@ class PythonLaw(CopiedByArguments):
         self.law, self.friction_directions = law, directions
         self.carried: tuple[Carried, ...] = (Carried("directions", directions, directions_on),)
         self.dtype = state_type(law.internal)
+        self._seen: list[tuple[LawState, LawKinematics]] = []  # the last input, for `doubts`
 
     def core(self, normal: NormalLaw, evolution: str) -> _core.Law:
         """Normal law and axes as the core has them."""
@@ -133,7 +135,9 @@ class PythonLaw(CopiedByArguments):
         """The law with a compliant layer behind it, see `LawInSeries`."""
         (one,) = self.carried
         law = LawInSeries(self.law, compliance)
-        return PythonLaw(law, directions=one.field, directions_on=one.on), SeriesHistory.unchanged()
+        behind = PythonLaw(law, directions=one.field, directions_on=one.on)
+        behind._seen = self._seen
+        return behind, SeriesHistory.unchanged()
 
     def slip_stiffness(self, dt: float) -> float:
         """Stiffness of the law against slip, see `law_stiffness`, stress/length."""
@@ -154,6 +158,10 @@ class PythonLaw(CopiedByArguments):
     def stiffest(self) -> float:
         """The law has no stiffness that is known: 0."""
         return 0.0
+
+    def doubts(self) -> str:
+        """What is wrong with the derivatives of the law at its last input, see `wrong_slopes`."""
+        return wrong_slopes(self.law, *self._seen[0]) if self._seen else ""
 
     def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
         """What the core finds for a batch, with the law evaluated in between.
@@ -176,13 +184,13 @@ class PythonLaw(CopiedByArguments):
         seen = look(raw)
         active = np.flatnonzero(seen["pressure"] > 0.0)
         at = slice(None) if len(active) == len(state) else active
-        result = evaluate(
-            self.law,
-            LawState(seen["stored"][at], seen["elastic"][at], state["internal"][at]),
-            LawKinematics(
-                seen["increment"][at], seen["pressure"][at], seen["gap"][at], seen["xi"][at], dt
-            ),
+        remembered = LawState(seen["stored"][at], seen["elastic"][at], state["internal"][at])
+        happens = LawKinematics(
+            seen["increment"][at], seen["pressure"][at], seen["gap"][at], seen["xi"][at], dt
         )
+        if len(active):
+            self._seen[:] = [(remembered, happens)]
+        result = evaluate(self.law, remembered, happens)
         found = update(raw, _laid_out(result, len(state), at))
         whole = as_state(found["state"], self.dtype)
         whole["internal"][at] = result.internal

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from anisocontact.bulk.material_warnings import STRESSED
+from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.overload import Overload, exhausted, reason_of, too_much_load
@@ -57,7 +58,8 @@ class Failures:
         text = f"{tried} of the increment" if tried else ""
         inverted = any(c.kind == "inverted" for c in outcome.culprits)
         causes = [line for line in self._doubtful if inverted and STRESSED in line]
-        text = "; ".join(part for part in (text, outcome.hint, *causes) if part)
+        slopes = wrong_derivatives(self._problem.contacts)
+        text = "; ".join(part for part in (text, slopes, outcome.hint, *causes) if part)
         increment = place.control.increment
         stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
         stop.failed = outcome.failed

@@ -18,6 +18,7 @@ from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
+from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES, SOFTER
 from anisocontact.solver.stepping.graded_penalties import GradedPenalties
@@ -158,6 +159,7 @@ class ContactProblem:
             found = system.sides.objection(system.nodal)
             reason = f"contact {found.contact!r}: {found.why}" if found else ""
         if reason:
+            reason = "; ".join(filter(None, [reason, wrong_derivatives(self.contacts)]))
             self.u.x.array[:] = before
             terms.roll_back()
             raise RuntimeError(reason)
