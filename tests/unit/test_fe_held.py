@@ -209,3 +209,28 @@ def test_motion_out_of_a_plane_is_found_before_anything_is_written(tmp_path, cap
     assert len(lines) == 1
     assert "moves nodes out of the symmetry plane 'bar.left', by 0.1" in lines[0]
     assert not out.exists()
+
+
+@pytest.mark.parametrize("before", [[], ["x", "y", "z"], ["z"]])
+def test_a_turn_out_of_a_plane_is_found_before_anything_is_solved(before):
+    """Requirement: as a motion out of a plane, where it is known from where the turn begins: at
+    rest, or where supports have led all of a node; else it is found when the step begins."""
+    box = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    material = {"bar": make_material("neo-hookean", E=100.0, nu=0.3)}
+    problem = Problem(box, material, symmetry=["bar.left"])
+    held = {"bar.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    led = {"bar.top": dict.fromkeys(before, 0.0) | {"z": 0.01}} if before else {}
+    press = Step("press", 1, held | led)
+    about_z = Turn((0, 0, 1), angle_deg=2.0, point=(0.5, 0.5, 0.0))
+    turn = Step("turn", 1, rotation={"bar.top": about_z})
+    steps = [press, turn] if before else [Step("turn", 1, held, rotation={"bar.top": about_z})]
+    said = r"step 'turn'.displacement: moves nodes out of the symmetry plane 'bar\.left', by 0\.017"
+    if before == ["z"]:
+        solver = Solver(problem, steps)
+        with pytest.raises(InputError, match=said):
+            list(solver.run())
+    else:
+        with pytest.raises(InputError, match=said):
+            Solver(problem, steps)
+        along_x = Turn((1, 0, 0), angle_deg=2.0, point=(0.5, 0.5, 0.0))
+        Solver(problem, [*steps[:-1], Step("turn", 1, held, rotation={"bar.top": along_x})])

@@ -52,6 +52,7 @@ def case(tmp_path: Path) -> Path:
     return path
 
 
+ALONG = 'directions = { kind = "constant", vector = [1, 0, 0] }'
 START, NORMAL = {"start": [0, 0]}, {"pressure": 10.0}
 
 
@@ -272,3 +273,19 @@ def test_a_trace_with_pictures_needs_no_finite_elements(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert list((tmp_path / "out").rglob("*.png"))
+
+
+@pytest.mark.parametrize("where", ["contact", "bare"])
+@pytest.mark.parametrize("stiffness", ["1e5", "[9e5, 1e5]"])
+def test_a_rule_whose_forces_jump_is_named(case, tmp_path, capsys, where, stiffness):
+    """Requirement: as in cases of bodies; not where stiffnesses go with the squares."""
+    rule = 'sliding_rule = "explicit"'
+    text = CASE.replace("stiffness = 1e5", f"stiffness = {stiffness}, {ALONG}")
+    if where == "contact":
+        text = text.replace("coefficients =", f"{rule}, coefficients =")
+    else:
+        text += f'[[compare]]\nlabel = "bare"\n{rule}\n'
+    case.write_text(text)
+    assert main(["trace", str(case), "-o", str(tmp_path / "out")]) == 0
+    said = f"warning: {where}: with sliding_rule = 'explicit' tangential forces turn at once"
+    assert (said in capsys.readouterr().err) == (stiffness == "1e5")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, override
 
 from pydantic import Field, create_model, model_validator
+from pydantic_core import ErrorDetails
 
 from anisocontact.base.cells import CELLS
 from anisocontact.base.registry import Entry
@@ -48,6 +49,13 @@ class Weighed(Registered):
     ] = None
 
 
+#: What is said of the order of the displacement where it is that of a file.
+_ORDER = (
+    "unknown key; the displacement has the order of the cells in the file: write it with cells of "
+    "order 2 (in gmsh Mesh.ElementOrder = 2, or `gmsh -order 2`)"
+)
+
+
 class Placed(Registered):
     """Where bodies stand: scaled about the origin, then turned, then moved."""
 
@@ -86,6 +94,11 @@ class MeshFile(Placed):
         ),
     ] = None
 
+    @classmethod
+    @override
+    def _text(cls, e: ErrorDetails) -> str:
+        return _ORDER if _asks_for_order(e) else super()._text(e)
+
 
 class Mesh(Section):
     """The bodies: from mesh files, from built-in shapes, or from both."""
@@ -99,6 +112,11 @@ class Mesh(Section):
         default_factory=dict, description="several mesh files, each under a name of its own"
     )
 
+    @classmethod
+    @override
+    def _text(cls, e: ErrorDetails) -> str:
+        return _ORDER if _asks_for_order(e) else super()._text(e)
+
     def shaped(self) -> dict[str, dict[str, Any]]:
         """Shape -> body -> its table."""
         named = {name: getattr(self, name) for name in type(self).model_fields}
@@ -108,6 +126,10 @@ class Mesh(Section):
     def from_files(self) -> bool:
         """Whether there are bodies of which only the files know the names."""
         return self.file is not None or bool(self.files)
+
+
+def _asks_for_order(e: ErrorDetails) -> bool:
+    return e["type"] == "extra_forbidden" and e["loc"][-1] == "order"
 
 
 def mesh_type(shapes: tuple[Entry, ...]) -> type[Mesh]:

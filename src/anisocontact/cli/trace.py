@@ -12,6 +12,7 @@ from anisocontact.case.trace import Trace, load_trace
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import say
 from anisocontact.interface import Interface
+from anisocontact.interface.jumping_forces import jumping_forces
 from anisocontact.point import Group, History, Load, StoppedError, drive
 from anisocontact.results.files import check_folder
 from anisocontact.results.lock import locked
@@ -51,6 +52,9 @@ def _drive_into(folder: Path, trace: Trace) -> int:
         pictures=trace.case.output.pictures,
         case=trace.text,
     )
+    for label, interface in [("contact", trace.interface), *trace.compared]:
+        if jumps := jumping_forces(interface.tangential):
+            say(f"warning: {label}: {jumps}", sys.stderr)
     for _, run in runs:
         if run.warning:
             say(f"warning: {run.warning}", sys.stderr)

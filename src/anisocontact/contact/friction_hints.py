@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
 from anisocontact.contact.contact import Contact
-from anisocontact.interface.contact_law import AdhesionAndFriction
+from anisocontact.interface.jumping_forces import jumping_forces
 from anisocontact.laws import EXPLICIT
 
 #: Ratio of two coefficients of friction below which increments fail: a block that is pressed and
@@ -31,7 +30,7 @@ def doubtful_friction(contacts: Sequence[Contact]) -> list[str]:
         f"contact of {' with '.join(one.groups)}: {text}"
         for one in contacts
         if not one.interface.tangential.in_python
-        for text in (_jump(one.interface.tangential) or _associated(one), _thin(one))
+        for text in (jumping_forces(one.interface.tangential) or _associated(one), _thin(one))
         if text
     ]
 
@@ -64,17 +63,6 @@ def _thin(contact: Contact) -> str:
     )
 
 
-def _jump(law: AdhesionAndFriction) -> str:
-    """How forces of a law jump, in words; empty if they do not."""
-    found = _JUMPS.get(law.sliding_rule)
-    if found is None:
-        return ""
-    stiffness = np.array(law.adhesion.named[1].get("stiffness", (1.0, 1.0)))
-    mu = np.array(law.friction.named[1].get("coefficients", (1.0, 1.0)))
-    jumps, text = found
-    return text if mu.all() and jumps(law, stiffness, mu) else ""
-
-
 def _associated(contact: Contact) -> str:
     """What the run has chosen for `explicit`, in words; empty where nothing hangs on it."""
     law = contact.interface.tangential
@@ -87,39 +75,3 @@ def _associated(contact: Contact) -> str:
         "squares of the coefficients, with which the rule slides as 'maximum-dissipation' and "
         "nothing jumps; give stiffnesses for those of the surfaces"
     )
-
-
-def _without_steady_slip(law: AdhesionAndFriction, stiffness: Floats, mu: Floats) -> bool:
-    """Whether a slip ellipse leaves directions without steady slip; asked of isotropic adhesion."""
-    if len(set(stiffness)) > 1:
-        return False
-    rule = law.friction.rule[1]
-    (angle,), axes = rule["slip_angle"], np.array(rule["slip_axes"])
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    slope = (turn * axes**-2.0) @ turn.T * mu[::-1, None] ** 2  # F K times the squares of both
-    return bool(np.linalg.eigvalsh(slope + slope.T)[0] <= 0.0)
-
-
-def _turns_at_onset(law: AdhesionAndFriction, stiffness: Floats, mu: Floats) -> bool:
-    """Whether the trial force T and B F T, that of `explicit`, have other directions."""
-    return bool(np.ptp(stiffness / mu**2) > _SAME * np.max(stiffness / mu**2))
-
-
-#: Difference of two numbers that are meant to be the same, relative.
-_SAME = 1e-6
-#: Rules whose forces may jump, whether they do, and what the user is told.
-_JUMPS: dict[str, tuple[Callable[[AdhesionAndFriction, Floats, Floats], bool], str]] = {
-    "slip-ellipse": (
-        _without_steady_slip,
-        "slip_axes and slip_angle are so far from the ellipse of friction that slip in some "
-        "directions raises the tangential force it should relieve: points stick there and jump, "
-        "and increments may not converge, least of all with penalties at slave nodes",
-    ),
-    EXPLICIT: (
-        _turns_at_onset,
-        "with sliding_rule = 'explicit' tangential forces turn at once where sliding begins, as "
-        "stiffnesses of adhesion are not in proportion to the squares of the coefficients: "
-        "increments may have no equilibrium, and then do not converge; with 'maximum-dissipation' "
-        "nothing jumps",
-    ),
-}

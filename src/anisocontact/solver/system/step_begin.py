@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.material_warnings import doubtful_materials
 from anisocontact.contact.remote_nodes import with_ghosts
@@ -75,16 +75,20 @@ def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) 
 def _rehearsed(
     parts: ProblemParts, steps: Sequence[Step]
 ) -> Iterator[tuple[Step, Supports, Guides, Loads]]:
-    """Supports, guides and loads of every step, begun without solving."""
+    """Supports, guides and loads of every step, begun without solving.
+
+    Unknowns that no support has prescribed stand at zero, the others where they have been led to.
+    """
     model = parts.model
     supports, loads = Supports(model), Loads(model, parts.materials)
     guides = parts.guides.fresh()
-    nothing = np.zeros(model.positions.size)
+    u, nothing = np.zeros(model.positions.size), np.zeros(model.positions.size)
     for step in steps:
-        supports.begin(step, nothing)
+        supports.begin(step, u)
         guides.take_over(step, nothing)
         loads.begin(step, nothing)
         yield step, supports, guides, loads
+        u[supports.unknowns] = supports.end
 
 
 def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
@@ -98,11 +102,12 @@ def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
             `check_lost_loads`.
     """
     turned, doubtful = False, check_courses(steps)
+    known = np.ones(len(parts.model.positions), dtype=bool)  # nodes whose place is
     for step, supports, guides, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)
         _check_motions(parts, step)
-        # Where a turn ends is not known before it has been.
-        turned = turned or bool(step.rotation)
+        # Where a turn ends is not known before it has been, unless it is known where it begins.
+        turned = turned or _turns_unknown(parts, step, known)
         for share in () if turned else supports.places:
             supports.set_load_factor(float(share))
             guides.check(supports.unknowns, supports.values, step.name, float(share))
@@ -115,7 +120,17 @@ def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
             ends = supports.unknowns, supports.end
             ties.sectors.check_prescribed(*ends, guides.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
+        known[:] = False
+        if step.until is None:
+            numbers, count = np.unique(supports.unknowns // 3, return_counts=True)
+            known[numbers] = count == 3
     return doubtful + _doubtful(parts)
+
+
+def _turns_unknown(parts: ProblemParts, step: Step, known: Flags) -> bool:
+    """Whether a step turns a rigid body, or nodes whose place is not known when it begins."""
+    nodes = (parts.model.nodes(group) for group in step.turned_groups())
+    return bool(step.turned_bodies()) or not all(known[own].all() for own in nodes)
 
 
 def _doubtful(parts: ProblemParts) -> list[str]:
