@@ -125,6 +125,20 @@ def test_whole_where_points_keep_their_status(until: float, share: float) -> Non
     assert system.visited == [0.0, share]
 
 
+@pytest.mark.parametrize(("lost", "share"), [(0.6, 0.5), (0.2, 0.125), (2.0, 1.0), (0.01, 1.0)])
+def test_contact_is_not_lost_at_once(
+    lost: float, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the balance falls with no share: as far as something touches, all where nothing does.
+
+    Source: a plate that retreats from a spring which stands on it; nothing holds that elsewhere.
+    """
+    search, system = begun(lambda x: 1.0 + x)
+    monkeypatch.setattr(system, "touch", lambda: system.visited[-1] < lost)
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == share
+    assert system.visited == [0.0, share]
+
+
 def test_leaves_the_reach_when_it_is_wanted_twice() -> None:
     """Halves of corrections that leave what `condensed` has would creep towards its end."""
     search, system = begun(lambda x: np.nan if x > 0.6 else 1.0 - x)

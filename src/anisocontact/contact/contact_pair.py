@@ -318,6 +318,8 @@ class ContactPair:
     def predict(self, ratio: float) -> None:
         """Let multipliers of the next trials start extrapolated, by a ratio of the last change."""
         self.trials.predict(ratio * self._gained)
+        if ratio == 0.0:
+            self.trials.expect_motion()
 
     def pass_through(self) -> None:
         """Remember the trial as a state that bodies which flow have gone through."""

@@ -122,6 +122,7 @@ class Multipliers:
         level: What the penalties are multiplied with at the beginning of an increment; part of the
             history.
         factor: What they are multiplied with now.
+        limit: Violation that is none, length.
         tangential: Whether there are multipliers of the tangential part.
         exact: Whether no compliance is meant to stay, but where there is no other way.
     """
@@ -133,7 +134,7 @@ class Multipliers:
     ) -> None:
         self.tangential = augmentation.tangential
         self.level = self.factor = self._proportion = 1.0
-        self._limit = augmentation.tolerance * size
+        self.limit = augmentation.tolerance * size
         self._penalties = penalties
         self._comm = comm
 
@@ -170,9 +171,9 @@ class Multipliers:
         start = state.copy()
         start["multiplier"] = state["pressure"]
         apart = state["status"] == OPEN
-        touching = located & apart & (state["gap"] <= self._limit)
+        touching = located & apart & (state["gap"] <= self.limit)
         start["gap"] = np.where(touching | ~apart, np.minimum(state["gap"], 0.0), state["gap"])
-        start["multiplier"][touching] = self._penalties[0] * self.factors[0] * self._limit
+        start["multiplier"][touching] = self._penalties[0] * self.factors[0] * self.limit
         apart &= ~touching
         if not self.tangential:
             start["gap"][apart] *= FAR
@@ -337,7 +338,7 @@ class Multipliers:
     def beyond(self, step: ContactTrial) -> Flags:
         """Points whose pressure, as one of a penalty, stands for more than the tolerance, (n,)."""
         deep = step.covered * step.answer.pressure / (self._penalties[0] * self.factors[0])
-        return np.asarray(deep > self._limit)
+        return np.asarray(deep > self.limit)
 
     def _violation(self, change: Floats, covered: Floats) -> float:
         """Largest penetration or elastic slip over all ranks that a change stands for, length.
@@ -358,7 +359,7 @@ class Multipliers:
         and what makes roundings of positions, by the penalty, a share of them that is good enough.
         """
         traction, areas = step.answer.traction, step.areas
-        least = np.maximum(ROUNDING * self._limit, ROUNDED / SHARE * step.far)
+        least = np.maximum(ROUNDING * self.limit, ROUNDED / SHARE * step.far)
         sizes = [(change**2).sum(axis=1), (traction**2).sum(axis=1), least**2]
         squares = areas @ np.stack(sizes, axis=1)
         changed, carried, rounded = np.sqrt(self._comm.allreduce(squares))

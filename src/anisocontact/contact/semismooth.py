@@ -111,7 +111,7 @@ class Semismooth(Multipliers):
         given, found = self.values(step)
         changed, carried = self._norms(found - given, step)
         return (
-            self._violation(found - given, step.covered) <= self._limit
+            self._violation(found - given, step.covered) <= self.limit
             and changed <= SHARE * carried
         )
 

@@ -14,6 +14,7 @@ from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.linearised import Linearised
 from anisocontact.contact.master import Answer, Master
+from anisocontact.contact.moved_master import followed
 from anisocontact.contact.multiplier_schemes import MultiplierSchemes
 from anisocontact.contact.multipliers import (
     RATIO,
@@ -65,6 +66,7 @@ class Trials:
         self._supports = SupportedPoints(len(state))
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
+        self._fresh = False
         self._state: State
         self._accepted: Snapshot
         self._now: Snapshot
@@ -92,7 +94,7 @@ class Trials:
             state: The state.
             accepted: The points in it.
         """
-        self.start, self._linear = state, None
+        self.start, self._linear, self._fresh = state, None, False
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
@@ -115,6 +117,10 @@ class Trials:
         self.begin(self._state, self._accepted)
         change, frames = self.master.into_frame(change), self._frames(self.start)
         self._start_from(self._own.extrapolated(self.start, change, frames))
+
+    def expect_motion(self) -> None:
+        """Take it that the next trial is where the master has moved and no node has yet."""
+        self._fresh = True
 
     def forget(self) -> None:
         """Forget about which trial a Newton step was linear."""
@@ -187,11 +193,23 @@ class Trials:
         master = self.master
         self._correct(semismooth, dt)
         trial = master.answer(self.start, dt, tangent=False, separate=True)
+        if self._follow(trial.snapshot):
+            trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
         physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
         answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical)
         return answer
+
+    def _follow(self, trial: Snapshot) -> bool:
+        """Let points go with a master that has moved; whether trials start anew from there."""
+        fresh, self._fresh = self._fresh, False
+        if not fresh or self._own is None or self._layer is not None:
+            return False
+        gap, before = trial.response.gap, self._accepted.response.gap
+        start = followed(self.start, self._own, gap, before, self._comm)
+        self.start = self.start if start is None else start
+        return start is not None
 
     def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""

@@ -107,7 +107,7 @@ class Uzawa(Multipliers):
     def _held(self, change: Floats, step: ContactTrial) -> bool:
         changed, carried = self._norms(change, step)
         largest = self._violation(change, step.covered)
-        if largest <= self._limit and changed <= SHARE * carried:
+        if largest <= self.limit and changed <= SHARE * carried:
             return True
         self._count(largest)
         # an iterate far off may have squeezed all facets flat
@@ -125,7 +125,7 @@ class Uzawa(Multipliers):
         if len(self._cycles) > MOST_CYCLES:
             raise NotHeldError(
                 f"the augmented Lagrangian leaves a violation of {violation:.2g} after "
-                f"{MOST_CYCLES} cycles, {self._limit:.2g} asked for"
+                f"{MOST_CYCLES} cycles, {self.limit:.2g} asked for"
             )
 
     def _raise(self, correction: float, typical: float) -> None:
@@ -140,7 +140,7 @@ class Uzawa(Multipliers):
             return
         left = self._cycles[-1] / self._cycles[-2]
         near = RAISE * correction < typical
-        if left > (SLOW if near else SOFT) and self._cycles[-1] > self._limit:
+        if left > (SLOW if near else SOFT) and self._cycles[-1] > self.limit:
             self.factor *= RAISE
             self._found *= 1.0 if near else RAISE
             self._raised = True

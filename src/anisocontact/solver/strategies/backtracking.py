@@ -29,9 +29,11 @@ class Backtracking:
     bend far come to their contact through it. Neither does the balance count where less than half
     would be taken though the whole correction changes the status of no point: slender bodies, whose
     membrane forces rise for one correction, would creep. Where no share will do it is taken whole,
-    if there is an answer: the active set may have to change at once. Two whole corrections in turn
-    that leave what `condensed` keeps in reach are no overshoot: the second is taken, so that it
-    widens the reach, in place of halves that would creep towards its end.
+    if there is an answer: the active set may have to change at once. Where that would end all
+    contact, the largest share is taken that does not, since nothing may hold a body there. Two
+    whole corrections in turn that leave what `condensed` keeps in reach are no overshoot: the
+    second is taken, so that it widens the reach, in place of halves that would creep towards its
+    end.
 
     Args:
         system: What is solved.
@@ -71,14 +73,17 @@ class Backtracking:
         self._known.append(self._system.balance.norm)
         bound = np.inf if free else max(self._known)
         marks, before = contacts.marks(), contacts.statuses()
-        answers, settled = True, False
+        answers, settled, touches = True, False, 0.0
         while share >= LEAST * largest:
             # a number that is none compares as false
             if self._norm_at(share, x, correction) <= bound:
                 self._left = self._left and share < largest
                 return share
+            answered = bool(np.isfinite(self._system.balance.norm))
+            if not touches and answered and contacts.touch():
+                touches = share
             if share == largest:
-                answers = bool(np.isfinite(self._system.balance.norm))
+                answers = answered
                 settled = answers and contacts.same(before)
                 left, self._left = self._left, self._system.outgrown
                 if left and self._left:
@@ -87,7 +92,7 @@ class Backtracking:
             share *= 0.5
             if settled and share < HALF * largest:
                 break
-        share = largest if answers else share
+        share = (touches or largest) if answers else share
         self._norm_at(share, x, correction)
         return share
 
