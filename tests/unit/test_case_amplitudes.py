@@ -6,7 +6,11 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
+from anisocontact.bulk import make_material
 from anisocontact.cli import main
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.solver import Problem, Solver, Step, Turn
 
 CASE = """
 [mesh.box.bar]
@@ -184,3 +188,35 @@ def test_wrong_amplitudes_are_one_line(case, capsys, old, new, line):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1, lines
     assert line in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("own", "said"),
+    [
+        ("n = 0\ndef power(time, k):\n    global n\n    n += 1\n    return n * time\n",
+         "0.9, and asked again 1: it must depend on the time alone"),
+        ("import random\ndef power(time, k):\n    return time * (1 + random.random())\n",
+         "it must depend on the time alone"),
+        ("def power(time, k):\n    return str(time)\n",
+         "TypeError: '0.0' returned, a number needed"),
+    ],
+    ids=["counts", "random", "text"],
+)  # fmt: skip
+def test_an_amplitude_that_is_no_function_of_time(case, capsys, own, said):
+    """Requirement: increments that are cut, attempts and runs that go on ask for times again."""
+    case.with_name("own.py").write_text(own)
+    assert main(["check", str(case)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: step 'load'.anchor.pull.z: ")
+    assert said in line
+
+
+def test_a_turn_whose_amplitude_counts():
+    """Requirement: as of other motions."""
+    values = iter([0.0, *range(100)])
+    turn = Turn((0, 0, 1), 0.1, amplitude=lambda time: next(values) * time)
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    problem = Problem(model, {"bar": make_material("linear-elastic", E=1.0, nu=0.0)})
+    step = Step("turn", 1, rotation={"bar.top": turn})
+    with pytest.raises(InputError, match=r"^step 'turn'\.rotation\.bar\.top\.amplitude: .* alone"):
+        Solver(problem, [step])

@@ -222,6 +222,36 @@ def test_restart_with_another_file_that_the_law_imports(tmp_path, capsys):
     assert "'unit.py' has changed since the run" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("changed", ["__init__", "unit", "deep/size", "deep/__init__"])
+def test_restart_with_another_file_of_a_package(tmp_path, capsys, changed):
+    """Requirement: packages beside the law count as well, and what they import from themselves."""
+    files = {
+        "__init__": "",
+        "unit": "ONE = 1.0\n",
+        "deep/__init__": "from ..unit import ONE\n",
+        "deep/size": "from . import ONE\n",
+    }
+    for name, text in files.items():
+        file = tmp_path / "parts" / f"{name}.py"
+        file.parent.mkdir(exist_ok=True, parents=True)
+        file.write_text(text, encoding="utf-8")
+    path = smooth(tmp_path, ("import numpy", "from parts.deep import size\nimport numpy"))
+    out = tmp_path / "out"
+    assert main(["run", str(path), "-o", str(out)]) == 0
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
+    (tmp_path / "parts" / f"{changed}.py").write_text("ONE = 2.0\n", encoding="utf-8")
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
+    assert f"'parts/{changed}.py' has changed since the run" in capsys.readouterr().err
+
+
+def test_a_law_that_goes_to_another_folder(tmp_path, monkeypatch):
+    """Requirement: paths of a case are relative to where the command is, whatever its files do."""
+    path = smooth(tmp_path, ("import numpy", "import os\nos.chdir('/')\nimport numpy"))
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", path.name, "-o", "out"]) == 0
+    assert (tmp_path / "out" / "summary.json").is_file()
+
+
 def test_check_without_running_the_law(tmp_path, capsys):
     """`check --no-python`: the file is not run, all else is checked, also that it is there."""
     ran, law = tmp_path / "was_run", tmp_path / "smooth.py"

@@ -194,6 +194,26 @@ class Course:
         values, seen = self._seen(duration, increments)
         return bool(np.abs(values - seen).max() > _COARSE * np.ptp(values))
 
+    def check_answers(self, duration: float) -> None:
+        """Refuse an amplitude whose values depend on more than the time.
+
+        It is asked for the same times in two orders: attempts, cuts and runs that go on ask for any
+        time, in any order and any number of times.
+
+        Args:
+            duration: Time the step takes.
+
+        Raises:
+            InputError: It has two values at one time.
+        """
+        times = [duration * k / _PLACES for k in range(_PLACES + 1)]
+        there = [self._number(t) for t in times]
+        for time, value in zip(reversed(times), reversed(there), strict=True):
+            again = self._number(time)
+            if abs(again - value) > _SAME * max(abs(value), abs(again)):
+                text = f"the amplitude at the time {time:g} makes it {value:g}, and asked again"
+                raise InputError(f"{text} {again:g}: it must depend on the time alone")
+
     def __str__(self) -> str:
         return "a course"
 
@@ -207,7 +227,10 @@ class Course:
 
     def _number(self, time: float) -> float:
         try:
-            found = float(self.amplitude(time))
+            answer: object = self.amplitude(time)
+            if isinstance(answer, str | bytes):  # Python would read the number in it
+                raise TypeError(f"{answer!r} returned, a number needed")
+            found = float(answer)  # type: ignore[arg-type]
         except (Exception, SystemExit) as error:
             raise InputError(f"amplitude at the time {time:g}: {where_failed(error)}") from None
         if not math.isfinite(found):

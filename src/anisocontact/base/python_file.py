@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -35,7 +36,7 @@ def module_of(path: Path) -> ModuleType:
 
 
 def imported_beside(path: Path) -> list[Path]:
-    """Python files in the folder of one that it imports, and those that these import.
+    """Python files that one imports from its folder, packages too, and those that these import.
 
     Args:
         path: The file; nothing is run.
@@ -43,26 +44,38 @@ def imported_beside(path: Path) -> list[Path]:
     Returns:
         The other files, in the order in which they are found; none where the file is no Python.
     """
-    found = [path]
+    found, root = [path], path.parent
     for file in found:
-        others = (path.with_name(f"{name}.py") for name in _imports(file))
         found += [
-            other for other in dict.fromkeys(others) if other not in found and other.is_file()
+            other
+            for other in dict.fromkeys(_imports(file, root))
+            if other not in found and other.is_relative_to(root) and other.is_file()
         ]
     return found[1:]
 
 
-def _imports(path: Path) -> Iterator[str]:
-    """Names of the modules that a file imports."""
+def _imports(file: Path, root: Path) -> Iterator[Path]:
+    """Where the modules that a file imports would be, in the folder `root` or in packages there."""
     try:
-        tree = ast.parse(path.read_bytes())
+        tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
         return
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            yield from (alias.name.partition(".")[0] for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.module.partition(".")[0]
+            for alias in node.names:
+                yield from _places(root, alias.name)
+        elif isinstance(node, ast.ImportFrom):
+            start = file.parents[min(node.level, len(file.parents)) - 1] if node.level else root
+            for alias in node.names:  # a name may be that of a module
+                yield from _places(start, ".".join(filter(None, [node.module, alias.name])))
+
+
+def _places(root: Path, name: str) -> Iterator[Path]:
+    """Files that are run where a module of a dotted name is imported from a folder."""
+    for part in name.split("."):
+        yield root / f"{part}.py"
+        root /= part
+        yield root / "__init__.py"
 
 
 def where_failed(error: BaseException) -> str:
@@ -109,7 +122,9 @@ def _readable(frames: list[traceback.FrameSummary]) -> list[traceback.FrameSumma
 @contextmanager
 def _beside(path: Path) -> Iterator[None]:
     sys.path.insert(0, str(path.resolve().parent))
+    folder = os.getcwd()
     try:
         yield
     finally:
         del sys.path[0]
+        os.chdir(folder)  # paths of the case are relative to it

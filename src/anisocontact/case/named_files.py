@@ -26,8 +26,10 @@ def named(file: CaseFile) -> Iterator[tuple[str, str]]:
         yield f"mesh.files.{name}.path", section.path
     for place, given in _programs(file.case):
         yield place, given
-        for other in imported_beside(file.resolve(given)):
-            yield place, Path(given).with_name(other.name).as_posix()
+        path = file.resolve(given)
+        for other in imported_beside(path):
+            beside = Path(given).parent / other.relative_to(path.parent)
+            yield place, beside.as_posix()
 
 
 def _programs(case: Case) -> Iterator[tuple[str, str]]:

@@ -214,12 +214,16 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
         Warnings: increments that are too few to follow an amplitude.
 
     Raises:
-        InputError: A jump, or an amplitude without a number.
+        InputError: A jump, or an amplitude without a number or with two at one time.
     """
     known: dict[Place, float | None] = {}
     said = []
     for step in steps:
         turned = set(step.rotation)
+        for name, turn in step.rotation.items():
+            if turn.amplitude is not None:
+                with within(f"step {step.name!r}.rotation.{name}.amplitude"):
+                    Course(turn.amplitude).check_answers(step.duration)
         known |= {place: None for place in known if place[1] in turned}
         for place, value in step.prescribed():
             name = ".".join(part for part in place if part)
@@ -245,6 +249,8 @@ def _followed(
     if value is None:
         return None, False
     history = history_of(value)
+    if isinstance(history, Course):
+        history.check_answers(step.duration)
     after = history.end(before, step.duration)
     if after is None and place[0] == "load":
         raise InputError("relative to a reaction force, which is not known beforehand")
