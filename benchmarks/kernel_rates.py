@@ -50,6 +50,14 @@ SURFACES: dict[str, dict[str, object]] = {
     "cone": {"apex": (-2, 0, 0), "axis": (1, 0, -0.5), "angle": 0.4636476090008061},
     "torus": {"centre": (0, 0, -0.5), "axis": (0, 0, 1), "radius": 1.5, "tube": 0.5},
     "ellipsoid": {"centre": (0, 0, -1), "semi_axes": (3, 2, 1), "axis": (1, 0, 0)},
+    "helicoid": {
+        "point": (-1.5, 0, -2.5),
+        "axis": (0, 0, 1),
+        "lead": 5.0,
+        "inner": 1.0,
+        "outer": 2.0,
+        "start": (0, 1, 0),
+    },
     "nurbs": {
         "degrees": (2, 2),
         "knots_1": (0, 0, 0, 1, 1, 1),

@@ -132,6 +132,54 @@ def _ellipsoid(name: str, a: float, b: float, c: float) -> SurfaceSample:
     )
 
 
+def _helicoid(name: str, lead: float, flank: float, *, below: bool = False) -> SurfaceSample:
+    """Gauss curvature -c^2/W^4 and mean curvature t ((1 + t^2) r^2 + 2 c^2)/(2 W^3), where W^2 = (1
+    + t^2) r^2 + c^2; both from the forms of rho by hand. The mirror makes the hand of the screw
+    another one."""
+    inner, outer, side = 0.6, 1.5, -1 if below else 1
+    c, t = side * lead / (2 * PI), np.tan(flank)
+
+    def curvature(u: Floats, s: Floats) -> tuple[Floats, Floats]:
+        w2 = (1 + t**2) * (outer - s) ** 2 + c**2
+        return -(c**2) / w2**2, side * t * (w2 + c**2) / (2 * w2**1.5)
+
+    def local(u: Floats, s: Floats) -> tuple[Floats, ...]:
+        r = outer - s
+        return r * np.cos(u), r * np.sin(u), c * u + t * (r - inner)
+
+    return SurfaceSample(
+        name=name,
+        shape="helicoid",
+        parameters={
+            "point": ORIGIN,
+            "lead": lead,
+            "inner": inner,
+            "outer": outer,
+            "flank": flank,
+            "below": below,
+        }
+        | PLACED,
+        size=0.5,
+        centre=ORIGIN,
+        window=((-7, 9), (0, outer - inner)),
+        whole=((-60, 60), (0, outer - inner)),
+        local=local,
+        curvature=curvature,
+        mirrored=below,
+        lengths=(False, True),
+    )
+
+
+def _helicoids() -> list[SurfaceSample]:
+    """Of a fastener, of a propeller, right and left, seen from both sides."""
+    return [
+        _helicoid("helicoid", 1.2, 0.5),
+        _helicoid("helicoid-left", -2.0, -0.3),
+        _helicoid("helicoid-steep", 9.0, 0.0),
+        _helicoid("helicoid-below", 1.2, 0.5, below=True),
+    ]
+
+
 def surface_samples() -> list[SurfaceSample]:
     """All samples; every registered surface has one."""
     revolved = [
@@ -145,7 +193,7 @@ def surface_samples() -> list[SurfaceSample]:
     splines = [nurbs_cylinder(), nurbs_sphere(), *patches()]
     turned = revolutions()
     bores = [s.bore() for s in (*revolved, turned[0])]
-    return [_plane(), *revolved, *bores, *spheroids, *splines, *turned]
+    return [_plane(), *revolved, *bores, *spheroids, *splines, *turned, *_helicoids()]
 
 
 def one_sheet(surface: Surface, x: Floats, step: Floats, size: float) -> Flags:

@@ -37,6 +37,7 @@ class SurfaceSample:
         mirrored: Whether its second axis is reversed (the material outside).
         closed: Whether each coordinate may run past its ends.
         axis: Direction near which points are ambiguous or singular.
+        lengths: Which coordinates are lengths; those without end if left out.
         breaks: Lines of each coordinate where the surface is less smooth, seams and poles included.
     """
 
@@ -52,6 +53,7 @@ class SurfaceSample:
     mirrored: bool = False
     closed: tuple[bool, bool] = (False, False)
     axis: Floats = field(default_factory=lambda: AXIS)
+    lengths: tuple[bool, bool] | None = None
     breaks: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
 
     def make(self) -> Surface:
@@ -76,6 +78,11 @@ class SurfaceSample:
             for line in self.breaks[k]:
                 clear &= np.abs(xi[:, k] - line) > width
         return clear
+
+    def scaled(self, xi: Floats, scale: float) -> Floats:
+        """The coordinates, (n, 2), of the same points where the unit of length is another one."""
+        endless = [high == INFINITE for _, high in self.whole]
+        return xi * np.where(self.lengths or endless, scale, 1.0)
 
     def bore(self) -> SurfaceSample:
         """The same with the slave inside: the angle runs the other way, curvatures change sign."""

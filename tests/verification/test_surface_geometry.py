@@ -174,9 +174,9 @@ def test_motion_and_units(sample: Any, surfaces: Any, scale: float) -> None:
         sample.shape, **surfaces.moved(sample.parameters, sample.shape, q, t, scale)
     )
     xi = sample.coordinates(300)
-    units = np.where(np.isfinite(here.domain[1]), 1.0, scale)  # coordinates without end are lengths
-    g, h = here.geometry(xi), there.geometry(xi * units)
-    error = there.position(xi * units) - (t + scale * here.position(xi) @ q.T)
+    same = sample.scaled(xi, scale)
+    g, h = here.geometry(xi), there.geometry(same)
+    error = there.position(same) - (t + scale * here.position(xi) @ q.T)
     assert np.abs(error).max() < LIMIT * 10 * sample.size * scale
     np.testing.assert_allclose(h.normal, g.normal @ q.T, atol=LIMIT)
     np.testing.assert_allclose(

@@ -5,6 +5,7 @@
 #include <concepts>
 
 #include "anisocontact/projection/ellipsoid.hpp"
+#include "anisocontact/projection/helicoid.hpp"
 #include "anisocontact/projection/nurbs.hpp"
 #include "anisocontact/projection/revolution.hpp"
 #include "anisocontact/surface/foot.hpp"

@@ -5,6 +5,7 @@
 #include "anisocontact/surface/analytic/cone.hpp"
 #include "anisocontact/surface/analytic/cylinder.hpp"
 #include "anisocontact/surface/analytic/ellipsoid.hpp"
+#include "anisocontact/surface/analytic/helicoid.hpp"
 #include "anisocontact/surface/analytic/nurbs_pieces.hpp"
 #include "anisocontact/surface/analytic/plane.hpp"
 #include "anisocontact/surface/analytic/revolution.hpp"
@@ -13,7 +14,8 @@
 
 namespace anisocontact::surface {
 
-using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid, Nurbs, Revolution>;
+using Surfaces =
+    Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid, Nurbs, Revolution, Helicoid>;
 using AnySurface = Surfaces::Any;
 
 inline Domain domain(const AnySurface& s) {
