@@ -34,28 +34,29 @@ def _press(z: float, increments: int = 1) -> Step:
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_a_jump_over_the_limit_of_friction(
+def test_a_flow_over_the_limit_of_friction(
     fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
 ) -> None:
     """A block that sticks and then slips, dragged to there by viscous flow alone.
 
-    Requirement: what work, stores, flow and friction leave open is below 1 % of the work, for one
-    increment, two and four. Source: balance of energy. The mean of both ends of each step of the
-    flow left 9 to 13 % in one increment, 2 to 3 % in two.
+    Requirement: what work, stores and friction leave open is below 1 % of the work, for one
+    increment, two and four, and nothing is called a jump. Source: balance of energy; the force of
+    the block grows to its end, so that no equilibrium is lost. What viscous forces took up on the
+    way was called the energy of a jump, up to half of the work.
     """
-    _only_flows(monkeypatch)
+    only_flows(monkeypatch)
     for increments in (1, 2, 4):
         block = fe.block(fe.interface(), cells=(3, 3, 2))
         drag = Step("drag", increments, {"block.top": {"x": 0.02, "y": 0.01}})
         for accepted in Solver(block.problem, [_press(-0.01), drag], strategy=strategy).run():
             energies = accepted.energies
-            assert energies["flow"] > 0.0
+            assert energies["flow"] == 0.0
             assert abs(energies["residual"]) < 0.01 * energies["external"]
             assert accepted.imbalance.share < 0.01
         assert energies["friction"] > 0.1 * energies["external"]
 
 
-def _only_flows(monkeypatch: pytest.MonkeyPatch) -> None:
+def only_flows(monkeypatch: pytest.MonkeyPatch) -> None:
     def flowing(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
         return [replace(full, flowing=True)]
 
@@ -101,46 +102,51 @@ def _jump(problem: Problem, pair: bool, strategy: str = "direct", **loads: Any) 
         (True, True, True, "iterative"),
     ],
 )
-def test_a_jump_with_multipliers_or_a_meshed_master(
+def test_a_flow_with_multipliers_or_a_meshed_master(
     monkeypatch: pytest.MonkeyPatch, pair: bool, exact: bool, mortar: bool, strategy: str
 ) -> None:
     """As above, where contact cannot be asked on the way, in one increment.
 
-    Requirement: below 1 % of the work open, for every master, method and strategy. Source: balance
-    of energy. The mean of both ends left 11 % with multipliers and 5 to 6 % with a meshed master.
+    Requirement: below 1 % of the work open and no jump, for every master, method and strategy.
+    Source: balance of energy. The mean of both ends left 11 % with multipliers and 5 to 6 % with a
+    meshed master.
     """
-    _only_flows(monkeypatch)
+    only_flows(monkeypatch)
     energies = _jump(jumping(pair, exact, mortar), pair, strategy).energies
-    assert energies["flow"] > 0.05 * energies["external"]
+    assert energies["flow"] == 0.0
     assert energies["friction"] > 0.1 * energies["external"]
     assert abs(energies["residual"]) < 0.01 * energies["external"]
 
 
 @pytest.mark.parametrize("held", ["load", "spring"])
-def test_a_jump_under_loads_and_springs(monkeypatch: pytest.MonkeyPatch, held: str) -> None:
-    """As above with a side that a traction pushes, or a spring holds: they work what they work."""
-    _only_flows(monkeypatch)
-    given: dict[str, Any] = {"traction": {"block.right": {"x": -5.0}}} if held == "load" else {}
-    parts = {"attached": [Spring("pull", "block.right", (50.0, 0.0, 0.0))]} if not given else {}
-    energies = _jump(jumping(True, False, False, **parts), True, **given).energies
-    assert energies["flow"] > 0.1 * abs(energies["external"])
-    assert abs(energies["residual"]) < 0.01 * energies["external"]
+def test_a_flow_under_loads_and_springs(monkeypatch: pytest.MonkeyPatch, held: str) -> None:
+    """As above with a side that a traction pushes, or a spring holds, and sliding that begins.
 
-
-def test_both_accounts_of_a_jump_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the laws take up along a flow, and contact asked on the way, on a plane with penalties.
-
-    Requirement: the same work of supports, and the same energy that the jump sets free, to 1 %.
-    Source: forces integrated along the way, which know nothing of energies. Tolerance: friction
-    is summed over the steps of the flow, of which there are 10 or so.
+    Requirement: work, stored and dissipated energies are those of Newton's method without flow, and
+    nothing is called a jump. Source: one equilibrium. Tolerance: that of the forces, 1e-8.
     """
-    _only_flows(monkeypatch)
+    loads: dict[str, Any] = {"traction": {"block.right": {"x": -5.0}}} if held == "load" else {}
+
+    def energies() -> Any:
+        springs = [] if loads else [Spring("pull", "block.right", (50.0, 0.0, 0.0))]
+        return _jump(jumping(True, False, False, attached=springs), True, **loads).energies
+
+    plain = energies()
+    only_flows(monkeypatch)
+    assert energies() == pytest.approx(plain, rel=1e-5, abs=1e-9)
+
+
+def test_both_accounts_of_work_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the laws take up, and contact asked on the way, on a plane with penalties.
+
+    Requirement: the same work of supports, to 1 %. Source: forces integrated along the way, which
+    know nothing of energies. Tolerance: friction has the mean of the pressures of both ends.
+    """
     asked = _jump(jumping(False, False, False), False).energies
     monkeypatch.setattr(ContactPair, "retraceable", False)
     taken_up = _jump(jumping(False, False, False), False).energies
     assert asked["residual"] != taken_up["residual"]
-    for name in ("external", "flow"):
-        assert taken_up[name] == pytest.approx(asked[name], rel=0.01)
+    assert taken_up["external"] == pytest.approx(asked["external"], rel=0.01)
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
@@ -370,13 +376,27 @@ def test_the_end_of_a_master_is_named(fe: Any) -> None:
     assert np.isclose(watch.persistent()[1], 3.0)
 
 
-def test_a_press_fit_is_named(fe: Any) -> None:
-    """A block drawn below its plane: what it stores is no work of supports, and that is said."""
-    block = fe.block(fe.interface(point=(0.0, 0.0, 0.01)), cells=(2, 2, 1))
+@pytest.mark.parametrize("strategy", STRATEGIES)
+@pytest.mark.parametrize("exact", [False, True])
+def test_a_press_fit_stores_what_its_overlap_works(fe: Any, exact: bool, strategy: str) -> None:
+    """A block drawn below its plane, of a linear material without friction, and pressed further.
+
+    Requirement: what it stores is the work, `F g / 2`, of an overlap g that grows from nothing,
+    with F of block and penalty in series; pressed by w more it is `F (g + w) / 2`. Source: closed
+    form of a block of nu = 0. Tolerance: Newton's. All of it was told to be left open.
+    """
+    young, height, overlap = 1000.0, 0.5, 0.01
+    plane = fe.interface(point=(0.0, 0.0, overlap), coefficients=(0.0, 0.0), penalty=1e4)
+    augmentation = Augmentation() if exact else None
+    block = fe.block(plane, cells=(2, 2, 1), nu=0.0, augmentation=augmentation)
     hold = Step("fit", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}})
-    (accepted,) = Solver(block.problem, [hold]).run()
-    assert accepted.imbalance.share > 0.5
-    assert accepted.imbalance.cause == CAUSES[5]
+    for accepted in Solver(block.problem, [hold, _press(-overlap)], strategy=strategy).run():
+        way = overlap if accepted.step == "fit" else 2.0 * overlap
+        force = way / (height / young + (0.0 if exact else 1e-4))
+        energies = accepted.energies
+        assert energies["external"] == pytest.approx(0.5 * force * way, rel=1e-6)
+        assert abs(energies["residual"]) < 1e-6 * energies["external"]
+        assert not accepted.imbalance.large
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
@@ -155,23 +154,19 @@ def _dome(overlap: float) -> tuple[Problem, list[Step]]:
     return problem, [Step("press", 1, down)]
 
 
-def test_what_hardly_overlaps_is_no_press_fit() -> None:
-    """The lowest node of a dome is 1e-4 below its plane, as meshes of round bodies have it.
+def test_a_dome_that_overlaps() -> None:
+    """The lowest node of a dome is below its plane by 1e-4, as in meshes of round bodies, or 0.1.
 
-    Requirement: the work is that of a dome which just touches, to 0.2 % of it, and nothing is said.
-    Source: what pushes the overlap apart works at most its depth times the force, 0.1 % of it.
-    With the mean of both ends 26 % were missed, and told as the energy of the overlap. That of a
-    dome which lies as deep as it is pressed is.
+    Requirement: nothing is left open, and the work with 1e-4 is that of a dome which just touches,
+    to 0.2 % of it. Source: what pushes the overlap apart works at most its depth times the force,
+    0.1 % of it. With the mean of both ends 26 % were missed, and told as the energy of the overlap.
     """
     works = []
-    for overlap in (0.0, 1e-4):
+    for overlap in (0.0, 1e-4, 0.1):
         (accepted,) = Solver(*_dome(overlap)).run()
-        assert not accepted.imbalance.large
+        assert accepted.imbalance.share < 1e-3
         works.append(accepted.energies["external"])
-    np.testing.assert_allclose(works[1], works[0], rtol=2e-3)
-    (accepted,) = Solver(*_dome(0.1)).run()
-    assert accepted.imbalance.large
-    assert accepted.imbalance.cause == CAUSES[5]
+    assert works[1] == pytest.approx(works[0], rel=2e-3)
 
 
 RANKS = """

@@ -55,17 +55,18 @@ def test_flow_ends_where_newton_ends(
         assert one.contacts == other.contacts
     moved = np.abs(block.problem.u.x.array - plain.problem.u.x.array).max()
     assert moved < 1e-6 * np.abs(plain.problem.u.x.array).max()
-    assert found[-1].energies["flow"] > 0.0 == wanted[-1].energies["flow"]
+    assert found[-1].energies == pytest.approx(wanted[-1].energies, rel=1e-5, abs=1e-9)
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_what_flow_dissipates_closes_the_balance(
+def test_a_flow_works_what_its_ends_say(
     fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
 ) -> None:
-    """Work from outside = what is stored + what the flow dissipates, on any path of it.
+    """Work from outside = what is stored, whatever the way of the flow.
 
     Source: bodies, penalty and adhesion that sticks are linear, so that the trapezoidal rule is
-    exact from one state of the flow to the next. Tolerance: 1e-8 of the forces are out of balance.
+    exact from one end of an increment to the other. Tolerance: 1e-8 of the forces are out of
+    balance. What viscous forces took up on the way counted as the energy of a jump.
     """
     _always_flows(monkeypatch)
     block = fe.block(fe.interface(coefficients=(10.0, 10.0)), cells=(3, 3, 2), nu=0.0)
@@ -75,7 +76,7 @@ def test_what_flow_dissipates_closes_the_balance(
     for one in accepted:
         assert one.contacts["block.bottom"]["stick"] == points
         energies = one.energies
-        assert energies["flow"] > 1e-3 * energies["external"]
+        assert energies["flow"] == 0.0
         assert abs(energies["residual"]) < 1e-7 * energies["external"]
 
 
@@ -135,7 +136,6 @@ def test_steps_grow_and_shrink() -> None:
     first = carried.stiffness
     assert carried.improve(u + 0.1, at_work=0.0)
     assert carried.stiffness == viscous_flow.LONGER * first
-    assert carried.spent == pytest.approx(0.5 * first * 24 * 0.1**2)
     assert carried.force(u + 0.1) == pytest.approx(0.0)
     assert carried.soften()
     assert carried.stiffness == viscous_flow.LONGER * viscous_flow.SHORTER * first

@@ -322,7 +322,7 @@ class ContactPair:
             self.trials.expect_motion()
 
     def pass_through(self) -> None:
-        """Remember the trial as a state that bodies which flow have gone through."""
+        """Remember the trial as a state that bodies which springs let go have come through."""
         self._energies.pass_through(self.current.response.state)
 
     def taken_up(self) -> float:

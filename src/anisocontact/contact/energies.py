@@ -35,11 +35,11 @@ class ContactEnergies:
         self._way: list[Slid] = []
 
     def begin(self) -> None:
-        """Forget the states that a flow has gone through."""
+        """Forget the states that bodies have come through."""
         self._way = []
 
     def pass_through(self, state: State) -> None:
-        """Remember a state that bodies which flow have gone through."""
+        """Remember a state that bodies which springs let go have come through."""
         self._way.append(Slid.of(state))
 
     def commit(self, before: Snapshot, state: State, end: Snapshot) -> None:

@@ -79,12 +79,12 @@ def dissipated(state: State, way: Sequence[Slid], end: State, mean: Floats | flo
     The law takes the slip from the accepted state at once, `D = -T . s` with the force of the end.
     In equilibrium the force that presses grows with the slip, and friction with it: its mean is
     right to second order; of a law in Python whose friction does not grow with the pressure, to
-    first order. Where bodies flow the way there is taken piece by piece, by the sum of the means;
-    while a point has not slipped its force at yield is taken for that of the next state.
+    first order. Where springs let bodies go the way there is taken piece by piece, by the sum of
+    the means; while a point has not slipped its force at yield is taken for that of the next state.
 
     Args:
         state: The accepted state.
-        way: What slip had come to on the way of a flow, empty in equilibrium.
+        way: What slip had come to where springs let bodies go, empty in equilibrium.
         end: The state where the way ends.
         mean: Mean of what presses in both states over that of the end, see `mean_pressures`; in
             equilibrium.

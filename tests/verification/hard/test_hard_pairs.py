@@ -173,7 +173,6 @@ def test_linear_bodies_jump_with_every_strategy(to_the_end, strategy):
     assert ours.strategy == {"auto": "condensed"}.get(strategy, strategy)
     for run in (ours, theirs):
         assert any(note.startswith("equilibrium was lost") for note in run.notes)
-        assert run.accepted[-1].energies["flow"] > 0.0
         assert _out_of_balance(run) < 1e-6
     wanted = theirs.force("drag")
     assert np.linalg.norm(ours.force("drag") - wanted) < 1.5e-2 * np.linalg.norm(wanted)

@@ -14,6 +14,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import initial_overlap
 from anisocontact.interface import STATUS
+from anisocontact.solver.system.contact_work import BELIEVED
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
 
@@ -60,6 +61,19 @@ class EnergyWatch:
         self._work = abs(self._external)
         self._counts = self._counted()
         self._overlap = any([initial_overlap(c, c.facet_size) for c in self._problem.contacts])
+
+    def accepted(self) -> dict[str, float]:
+        """Energies of an accepted increment, with what a jump in it has set free.
+
+        Where bodies have flowed that is what the increment has left open, unless forces of supports
+        and loads between those of both of its ends can explain it.
+        """
+        energies, flowed = self._problem.energies(), self._problem.flowed
+        lost = energies["residual"] - self._residual
+        if flowed is None or not lost > BELIEVED * flowed.missed:
+            return energies
+        self._problem.stabilisation.released += lost
+        return energies | {"flow": energies["flow"] + lost, "residual": self._residual}
 
     def after(self, energies: Mapping[str, float], ran_off: bool) -> Imbalance:
         """The balance after an accepted increment.

@@ -354,7 +354,7 @@ class Solver:
         self, step: Step, increment: int, done: float, outcome: Outcome, events: EventWatch
     ) -> Accepted:
         last = increment == step.increments and done == 1.0
-        contacts, energies = self.problem.contacts, self.problem.energies()
+        contacts, energies = self.problem.contacts, self._energy.accepted()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
         held = {c.name: c.undetermined() for c in contacts}
         slivers = {c.name: c.slivers() for c in contacts} if outcome.relaxed else {}

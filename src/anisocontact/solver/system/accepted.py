@@ -6,6 +6,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.terms.persistent import Arrays
 
@@ -38,7 +39,7 @@ class AcceptedState:
     def begin_way(self) -> None:
         """Start from the accepted state."""
         self._place, self._force = self.displacement, self.outside
-        self.way_work = 0.0
+        self.way_work = EndsWork(0.0, 0.0)
 
     def go_on(self, x: Vec, outside: Floats) -> None:
         """Add the work from the last state on the way to this one.
@@ -50,8 +51,9 @@ class AcceptedState:
             outside: All forces but those of contact, force.
         """
         place = np.array(x.array_r[: self._layout.owned])
-        mean = 0.5 * (self._force + outside)
-        self.way_work += self._layout.comm.allreduce(float(mean @ (place - self._place)))
+        local = EndsWork.between(self._force, outside, place - self._place)
+        sums = self._layout.comm.allreduce(np.array([local.mean, local.missed]))
+        self.way_work += EndsWork(*sums.tolist())
         self._place, self._force = place, outside
 
     def take(self, outside: Floats, load: Floats) -> None:

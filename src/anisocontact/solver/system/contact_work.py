@@ -6,19 +6,21 @@ was none. Here contact is asked on the straight way between the ends, from the a
 and the rule is refined until it no longer changes; no state does.
 
 Where supports and prescribed motions alone drive the bodies the difference is work of these.
-Loads and springs work what they work, whatever contact does on the way. Where bodies flow the
-supports have come to rest after the first step of the flow: from there on the difference is what
-viscous forces have had to take up.
+Loads and springs work what they work, whatever contact does on the way.
 
 Multipliers and meshed masters do not answer on the way as if nothing had been after it. There, and
 under loads that stay as they are, work goes into contact that its laws take up: they store it, or
-dissipate it with the mean of the pressures of both ends.
+dissipate it with the mean of the pressures of both ends. They are believed as far as forces of
+supports and loads between those of both ends can have done that work: what is beyond it would be
+the energy of a jump.
+
+Bodies that overlap without pressing have been pushed together by nobody. As they are pushed apart
+the overlap works like an interference that grows from nothing, with the mean of the pressures.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -27,6 +29,7 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI
 from anisocontact.base.statuses import OPEN
 from anisocontact.contact import Contact
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import ProblemParts
 
@@ -38,15 +41,15 @@ BACK = -0.5
 COARSE = LARGE
 #: Share of the work so far by which a point may change the rule, and points at which it ends.
 FINE, MOST = 1e-3, 32
-#: Share of the work so far that pushing overlaps apart may take where laws are still asked.
-APART = 1e-3
 #: Share of the pressure that points may lose which open: half of what friction does there is missed
 #: by the laws, which have no pressure at the end.
 LOST = 2.0 * LARGE
-#: Times what forces between those of both ends can miss, up to which laws are believed: half of it
-#: is the tangential force, with pressures that change meanwhile as much again.
+#: Times what the mean of both ends can miss of forces between them, up to which laws are believed:
+#: half of it is the tangential force, with pressures that change meanwhile as much again.
 BELIEVED = 2.0
 _AT_ONCE = 1e-9
+#: Overlap over the size of what a point stands for that is none, but rounding of positions.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -64,31 +67,6 @@ class _WayPoint:
         )
 
 
-@dataclass(frozen=True)
-class _Passed:
-    """What contact was where bodies that flow have come through.
-
-    Attributes:
-        place: Displacement of the local nodes, (nodes, 3), length.
-        force: Of the contacts on the unknowns this rank owns, force.
-        taken_up: What the laws have stored and dissipated since the accepted state, energy.
-    """
-
-    place: Floats
-    force: Floats
-    taken_up: float
-
-    def mean_work(self, after: _Passed) -> float:
-        """Work from outside against contact on the way to the next one, by the mean of both."""
-        way = (after.place - self.place).reshape(-1)[: len(self.force)]
-        return float(-0.5 * (self.force + after.force) @ way)
-
-    def most_missed(self, after: _Passed) -> float:
-        """What that mean misses at most where forces on the way lie between those of both ends."""
-        way = (after.place - self.place).reshape(-1)[: len(self.force)]
-        return float(0.5 * abs(after.force - self.force) @ abs(way))
-
-
 class ContactWork:
     """What contact works along the way from the accepted state to the next.
 
@@ -99,8 +77,6 @@ class ContactWork:
     def __init__(self, parts: ProblemParts) -> None:
         self._parts, self._contacts, self._rigid = parts, parts.contacts, parts.rigid
         self._comm: Any = parts.layout.comm
-        self._places: list[_WayPoint] = []
-        self._passed: list[_Passed] = []
 
     def begin(self, nodal: Floats, force: Floats) -> None:
         """Start from the accepted state.
@@ -109,15 +85,9 @@ class ContactWork:
             nodal: Displacement of the local nodes there, (nodes, 3), length.
             force: What `forces` were there.
         """
-        self._passed = [_Passed(nodal.copy(), force, 0.0)]
         accepted = [body.accepted.values for body in self._rigid.bodies]
-        self._places = [_WayPoint(nodal.copy(), np.reshape(accepted, (-1, 6)))]
-
-    def pass_through(self, nodal: Floats) -> None:
-        """Go on to a state that bodies which flow have come to."""
-        self._places.append(self._here(nodal))
-        if self._parts.stabilisation.flow.flows:
-            self._passed.append(self._passing(nodal))
+        self._start = _WayPoint(nodal.copy(), np.reshape(accepted, (-1, 6)))
+        self._force = force
 
     def forces(self, nodal: Floats) -> Floats:
         """Forces of the contacts in the trial on the unknowns this rank owns; collective.
@@ -130,41 +100,35 @@ class ContactWork:
             contact.add_force(local)
         return self._parts.layout.assembled(local)
 
-    def beyond_the_means(self, nodal: Floats, dt: float, work: float) -> float:
-        """Work that the means of the ends have missed on the way to a state in equilibrium.
+    def of_overlaps(self) -> float:
+        """Work of overlaps that nothing has pressed together before, as the trial parts them.
 
-        The part of a flow is taken from what jumps have set free.
+        As if they had grown from nothing on the way: linear bodies are exact, force times length.
+        """
+        return 0.5 * float(self._comm.allreduce(sum(map(_parting, self._contacts))))
+
+    def beyond_the_means(self, nodal: Floats, dt: float, work: float, ends: EndsWork) -> float:
+        """Work that the means of the ends have missed on the way to a state in equilibrium.
 
         Args:
             nodal: Displacement of the local nodes there, (nodes, 3), length.
             dt: Time increment.
             work: Work from outside so far, force times length.
+            ends: That of the way, by its ends.
 
         Returns:
             The part of supports and prescribed motions, force times length.
         """
-        prescribed = self._prescribed_alone(nodal)
-        answers = all(contact.retraceable for contact in self._contacts)
-        if len(self._passed) > 1 and not (prescribed and answers):
-            return self._taken_up(nodal, prescribed)
         if not self._kinks():
             return 0.0
-        if not (prescribed and answers):
-            return self._by_the_laws(nodal, work, prescribed)
-        places = [*self._places, self._here(nodal)]
-        pieces = np.array([self._piece(a, b, dt, work) for a, b in pairwise(places)])
-        missed = pieces[:, 0] - pieces[:, 1]
-        if len(pieces) > 1:
-            # rigid bodies were counted over the whole way at once, and move in its first step
-            ends = [self._power(places[0], places[-1], share, dt)[1] for share in (0.0, 1.0)]
-            missed[0, 1] = pieces[:, 0, 1].sum() - 0.5 * sum(ends)
-            missed[1:, 1] = 0.0
-        self._evaluate(places[-1], dt)
-        first, rest = float(missed[0].sum()), float(missed[1:].sum())
-        if not np.isfinite(first + rest):
-            return 0.0
-        self._parts.stabilisation.released -= rest
-        return first
+        prescribed = self._prescribed_alone(nodal)
+        if not (prescribed and all(contact.retraceable for contact in self._contacts)):
+            return self._by_the_laws(nodal, work, prescribed, ends)
+        end = self._here(nodal)
+        along, mean = self._piece(self._start, end, dt, work)
+        self._evaluate(end, dt)
+        missed = float((along - mean).sum())
+        return missed if np.isfinite(missed) else 0.0
 
     def _prescribed_alone(self, nodal: Floats) -> bool:
         """Whether supports and prescribed motions alone drive the bodies."""
@@ -173,36 +137,24 @@ class ContactWork:
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
 
-    def _taken_up(self, nodal: Floats, prescribed: bool) -> float:
-        """As `beyond_the_means`, by what the laws store and dissipate along a flow."""
-        if self._rigid.free:
-            return 0.0
-        passed = [*self._passed, self._passing(nodal)]
-        means = [a.mean_work(b) for a, b in pairwise(passed)]
-        first, end = passed[1].taken_up, passed[-1].taken_up
-        local = [first - means[0] - self._mean_of_rigid()[0], end - first - sum(means[1:])]
-        begun, rest = self._comm.allreduce(np.array(local)).tolist()
-        if not np.isfinite(begun + rest):
-            return 0.0
-        self._parts.stabilisation.released -= rest if prescribed else begun + rest
-        return begun if prescribed else 0.0
-
-    def _by_the_laws(self, nodal: Floats, work: float, prescribed: bool) -> float:
+    def _by_the_laws(self, nodal: Floats, work: float, prescribed: bool, ends: EndsWork) -> float:
         """As `beyond_the_means`, by what the laws store and dissipate on a way in equilibrium.
 
         The mean of both ends stays where something else than motion drives the bodies, where they
         may have leapt, where the difference would be no warning, and where it is more than forces
-        between those of both ends can explain: laws that count wrongly are then told.
+        of supports and loads between those of both ends can explain: laws that count wrongly, and
+        jumps, are then told.
         """
-        if not (prescribed or self._led()) or self._leapt(prescribed, work):
+        if not (prescribed or self._led()) or self._leapt(prescribed):
             return 0.0
-        before, end = self._passed[0], self._passing(nodal)
-        mean, most = self._mean_of_rigid()
-        local = float(sum(contact.taken_up() for contact in self._contacts))
-        local -= before.mean_work(end) + mean
-        sums = np.array([local, before.most_missed(end) + most])
+        way = (nodal - self._start.nodal).reshape(-1)[: len(self._force)]
+        rigid = self._of_rigid()
+        local = float(sum(contact.taken_up() for contact in self._contacts)) - rigid.mean
+        local -= EndsWork.between(-self._force, -self.forces(nodal), way).mean
+        sums = np.array([local, rigid.missed])
         missed, most = self._comm.allreduce(sums).tolist()
-        counts = COARSE * abs(work) < abs(missed) < BELIEVED * most
+        missed -= self.of_overlaps()
+        counts = COARSE * abs(work) < abs(missed) < BELIEVED * (ends.missed + most)
         return missed if counts and np.isfinite(missed) else 0.0
 
     def _led(self) -> bool:
@@ -214,29 +166,23 @@ class ContactWork:
         moves = moving > 0 or not parts.rigid.rest
         return bool(held and moves and changing == 0 and parts.rigid.loads_rest)
 
-    def _leapt(self, prescribed: bool, work: float) -> bool:
-        """Whether loads landed bodies, pressure was lost, or overlaps were pushed apart."""
-        local = np.array([_pressures(contact, prescribed) for contact in self._contacts])
-        before, lost, after, apart = np.reshape(self._comm.allreduce(local), (-1, 4)).T
+    def _leapt(self, prescribed: bool) -> bool:
+        """Whether loads landed bodies, or pressure was lost where motion has lifted nothing."""
+        local = np.array([_pressures(contact) for contact in self._contacts])
+        before, lost, after = np.reshape(self._comm.allreduce(local), (-1, 3)).T
         landed = not prescribed and bool(np.any((before == 0.0) & (after > 0.0)))
-        pushed = bool(apart.sum() > APART * abs(work))
-        return landed or pushed or bool(lost.sum() > LOST * before.sum())
+        return landed or bool(lost.sum() > LOST * before.sum())
 
-    def _passing(self, nodal: Floats) -> _Passed:
-        taken_up = sum(contact.taken_up() for contact in self._contacts)
-        return _Passed(nodal.copy(), self.forces(nodal), taken_up)
-
-    def _mean_of_rigid(self) -> tuple[float, float]:
-        """Work on rigid bodies by the mean of both ends of the whole way, and `most_missed`."""
-        work = most = 0.0
+    def _of_rigid(self) -> EndsWork:
+        """Work on rigid bodies, of this rank."""
+        found = EndsWork(0.0, 0.0)
         for body in self._rigid.bodies:
             way = body.trial.values - body.accepted.values
             before = body.reference + body.accepted.translation
             for one in self._rigid.contacts[body]:
                 start, end = one.accepted.wrench(before), one.current.wrench(body.position)
-                work += 0.5 * float((start + end) @ way)
-                most += 0.5 * float(abs(end - start) @ abs(way))
-        return work, most
+                found += EndsWork.between(start, end, way)
+        return found
 
     def _piece(
         self, start: _WayPoint, end: _WayPoint, dt: float, work: float
@@ -277,14 +223,14 @@ class ContactWork:
         return _WayPoint(nodal.copy(), np.reshape(values, (-1, 6)))
 
     def _kinks(self) -> bool:
-        """Whether enough points begin, end or reverse contact or slip, or bodies flow."""
+        """Whether enough points begin, end or reverse contact or slip."""
         changed = touching = 0
         for contact in self._contacts:
             before, now = contact.state["status"], contact.trial.state["status"]
             changed += int(np.count_nonzero((before != now) | _reversed(contact)))
             touching += int(np.count_nonzero(now != OPEN))
         changed, touching = self._comm.allreduce(np.array([changed, touching]))
-        return len(self._places) > 1 or bool(changed > CHANGED * touching)
+        return bool(changed > CHANGED * touching)
 
 
 def _reversed(contact: Contact) -> Flags:
@@ -297,30 +243,25 @@ def _reversed(contact: Contact) -> Flags:
     return np.asarray(np.einsum("nd,nd->n", *sides) < BACK * sizes)
 
 
-def _pressures(contact: Contact, lifted: bool) -> tuple[float, float, float, float]:
-    """Forces of pressure before and after an increment, on this rank.
-
-    Args:
-        contact: The contact.
-        lifted: Whether motion alone has lifted points that have opened in front of their master.
+def _pressures(contact: Contact) -> tuple[float, float, float]:
+    """Forces of pressure before and after an increment that motion drives, on this rank.
 
     Returns:
-        Their sum before, that of points which have lost it otherwise, their sum after, force; and
-        what they can work at most on points that were below their master without any, energy.
+        Their sum before, that of points which have lost it and did not just open in front of their
+        master, their sum after, force.
     """
     before, now = contact.state, contact.trial.state
-    force, free = contact.areas * before["pressure"], before["pressure"] <= 0.0
-    below = free & contact.master.located(before)
-    lost = now["pressure"] <= 0.0
-    if lifted:
-        lost &= ~contact.master.located(now)
-    after = contact.areas * now["pressure"]
-    return (
-        float(force.sum()),
-        float(force[lost].sum()),
-        float(after.sum()),
-        float(after[below] @ np.maximum(-before["gap"][below], 0.0)),
-    )
+    force = contact.areas * before["pressure"]
+    lost = (now["pressure"] <= 0.0) & ~contact.master.located(now)
+    return float(force.sum()), float(force[lost].sum()), float(contact.areas @ now["pressure"])
+
+
+def _parting(contact: Contact) -> float:
+    """Pressure of the trial on overlaps that had none before, on this rank, force times length."""
+    before, now = contact.state, contact.trial.state
+    below = (before["pressure"] <= 0.0) & contact.master.located(before)
+    below &= before["gap"] < -_ROUNDING * np.sqrt(contact.areas)
+    return float((contact.areas * now["pressure"])[below] @ -before["gap"][below])
 
 
 def _rule(powers: dict[float, Floats], rest: float) -> tuple[Floats, list[float]]:

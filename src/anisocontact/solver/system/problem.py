@@ -20,6 +20,7 @@ from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
 from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.evaluation import Evaluation
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
@@ -69,6 +70,7 @@ class Problem(ComposedSystem):
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
+        flowed: Work of the last accepted increment if bodies flowed in it.
         evaluation: Forces at the state of the last evaluation.
 
     Raises:
@@ -115,6 +117,7 @@ class Problem(ComposedSystem):
         self.load_factor = self.dt = 0.0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
+        self.flowed: EndsWork | None = None
         self.whole = Whole(self.evaluation, parts, self._bodies, self._accepted)
         self.reduction: Reduction = self.whole
         self._restart_state = RestartState(assembly.terms, self._accepted, self._bodies)
@@ -270,15 +273,6 @@ class Problem(ComposedSystem):
     @override
     def _go_on(self, x: Vec) -> None:
         self._accepted.go_on(x, self.balance.outside)
-        self.pass_through(self._bodies.nodal)
-
-    def pass_through(self, nodal: Floats) -> None:
-        """Remember a state on the way to the next accepted one.
-
-        Args:
-            nodal: Displacement of the local nodes, (nodes, 3), length.
-        """
-        self._contact_work.pass_through(nodal)
         self.contact_term.pass_through()
 
     @override
@@ -330,8 +324,11 @@ class Problem(ComposedSystem):
         Args:
             x: All unknowns of a state in equilibrium.
         """
-        work, nodal = self.reduction.commit(x), self.reduction.nodal(x)
-        work += self._contact_work.beyond_the_means(nodal, self.dt, self._accepted.work + work)
+        ends, nodal = self.reduction.commit(x), self.reduction.nodal(x)
+        self.flowed = ends if self.stabilisation.flow.flows else None
+        work = ends.mean + self._contact_work.of_overlaps()
+        so_far = self._accepted.work + work
+        work += self._contact_work.beyond_the_means(nodal, self.dt, so_far, ends)
         self._accepted.contact = self._contact_work.forces(nodal)
         self._accepted.work += work + self.assembly.terms.accept(nodal)
         x.copy(self._accepted.x)

@@ -6,6 +6,7 @@ from typing import Protocol
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 
@@ -19,7 +20,7 @@ class Reduction(Protocol):
 
     whole: bool
 
-    def commit(self, x: Vec) -> float:
+    def commit(self, x: Vec) -> EndsWork:
         """Take over an accepted state and return the work from outside since the last one."""
         ...
 

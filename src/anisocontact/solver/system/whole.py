@@ -8,6 +8,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.evaluation import Evaluation
 from anisocontact.solver.system.interior import with_interior
 from anisocontact.solver.system.parts import ProblemParts
@@ -31,7 +32,7 @@ class Whole:
         self._bodies, self._accepted = bodies, accepted
         self._pending: Arrays = {}
 
-    def commit(self, x: Vec) -> float:
+    def commit(self, x: Vec) -> EndsWork:
         """As of `Reduction`."""
         balance = self._evaluation.at(x)
         self._accepted.go_on(x, balance.outside)

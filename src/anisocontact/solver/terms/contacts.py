@@ -104,7 +104,7 @@ class Contacts(Term):
             contact.history_of = self._key
 
     def pass_through(self) -> None:
-        """Remember a state that the bodies flow through, for the work of friction."""
+        """Remember a state that springs let bodies go through, for the work of friction."""
         for contact in self._all:
             contact.pass_through()
 

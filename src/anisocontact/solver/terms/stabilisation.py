@@ -60,7 +60,8 @@ class Stabilisation(Term):
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
-        released: What `flow` has dissipated since the start, force times length.
+        released: What jumps have set free since the start that bodies came through by `flow`,
+            force times length.
         careful: Whether bodies get springs also where they stick: until the step ends, bodies on
             springs of their own are caught, or contact has held all through a few accepted parts,
             see `distrust`.
@@ -119,13 +120,13 @@ class Stabilisation(Term):
 
     @property
     def travels(self) -> bool:
-        """Whether work is counted on the way on which bodies flow, or springs let them go.
+        """Whether work is counted on the way on which springs let bodies go.
 
         It is where loads carry them: what these work there is lost. Bodies that touch, and on which
         springs stand against nothing but contact, slide with what moves them: where to, springs
-        only help to find.
+        only help to find, and so does a flow.
         """
-        return self.flow.flows or self._driven
+        return self._driven and not self.flow.flows
 
     @property
     def loose(self) -> list[FreeBody]:
@@ -412,7 +413,6 @@ class Stabilisation(Term):
     @override
     def accept(self, u: Floats) -> float:
         self.energy += self._spent
-        self.released += self.flow.spent
         self._spent = 0.0
         self._sound += self._holding
         self.careful = self.careful and not (self._caught or self._sound >= self._patience)

@@ -47,9 +47,7 @@ class ViscousFlow(Term):
 
     Attributes:
         stiffness: Viscosity over the step of time, of each node, force/length; 0 at rest.
-        spent: What viscous forces have dissipated since the start, force times length; trapezoidal
-            rule, in which linear bodies are exact.
-        steps: Number of steps since then.
+        steps: Number of steps since the start.
         flows: Whether this is one of the attempts that flow.
     """
 
@@ -61,12 +59,11 @@ class ViscousFlow(Term):
 
     def stop(self) -> None:
         """Nothing flows."""
-        self.stiffness = self._last = self.spent = self._speed = 0.0
+        self.stiffness = self._last = self._speed = 0.0
         self.steps = self._corrections = self._waits = self._tried = 0
         self.flows = False
         self._from: Floats = np.zeros((0, 3))
         self._nodes = np.zeros(0, dtype=PETSc.IntType)
-        self._force: Floats = np.zeros((0, 3))
 
     def start(self, u: Floats, where: Flags | None = None) -> None:
         """Let the bodies flow.
@@ -79,7 +76,6 @@ class ViscousFlow(Term):
         self.flows = True
         nodes = np.arange(self._owned) if where is None else np.flatnonzero(where)
         self._nodes = nodes.astype(PETSc.IntType)
-        self._force = np.zeros((len(nodes), 3))
         self._from = u.copy()
         self.stiffness = self._last = FIRST * self._scale
 
@@ -130,13 +126,9 @@ class ViscousFlow(Term):
 
     def _move(self, u: Floats) -> float:
         """Go on to a state, (nodes, 3); the norm of the viscous forces there."""
-        moved = (u - self._from)[self._nodes]
-        force = self.stiffness * moved
-        work = 0.5 * ((self._force + force) * moved).sum()
-        work, squared = self._comm.allreduce(np.array([work, (force**2).sum()]))
-        self.spent += float(work)
-        self._from, self._force = u.copy(), force
-        return float(np.sqrt(squared))
+        force = self.stiffness * (u - self._from)[self._nodes]
+        self._from = u.copy()
+        return float(np.sqrt(self._comm.allreduce(float((force**2).sum()))))
 
     def soften(self) -> bool:
         """After a step that failed: take a shorter one; whether there is one."""

@@ -15,6 +15,7 @@ from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, WorkForces
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.rotations import BodyRotation, Kept, Rotations
 from anisocontact.solver.terms.persistent import Arrays
@@ -164,7 +165,7 @@ class Condensed:
         self._note("a slave point left the part of its master that can be touched: widened")
         self._condense()
 
-    def commit(self, x: Vec) -> float:
+    def commit(self, x: Vec) -> EndsWork:
         """Accept a state of the contact unknowns.
 
         Args:
@@ -176,10 +177,11 @@ class Condensed:
         system = self.system
         before, after = self._state, self._trial(x)
         assert before is not None
-        work = sum(starmap(system.patterns.work, pairwise([before, *system.way, after])))
+        way = pairwise([before, *system.way, after])
+        work = sum(starmap(system.patterns.work, way), EndsWork(0.0, 0.0))
         self._state, self._load, self._forces = after, self._trial_load, system.raw_forces
         self._stale = True
-        return float(work)
+        return work
 
     def nodal(self, x: Vec) -> Floats:
         """Displacement of the nodes in a vector of all unknowns, (nodes, 3), length."""

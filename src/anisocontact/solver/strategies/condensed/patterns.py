@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.solver.strategies.condensed.parts import Condensation
+from anisocontact.solver.system.ends_work import EndsWork
 from anisocontact.solver.terms.persistent import Arrays
 
 #: Share of a load that may be missing from its combination of patterns: rounding.
@@ -275,12 +276,11 @@ class Patterns:
         own = a @ self._lift_stiffness @ a + b @ self._load_work @ b
         return float(0.5 * (u @ self._bulk.schur_times(u) + own) + coupling)
 
-    def work(self, before: InteriorState, after: InteriorState) -> float:
-        """Work from outside between two states, trapezoidal rule, force times length."""
+    def work(self, before: InteriorState, after: InteriorState) -> EndsWork:
+        """Work from outside between two states, force times length."""
         (a, b), (a_new, b_new) = self._padded(before), self._padded(after)
-        loads = 0.5 * (b + b_new) @ (self.works(after) - self.works(before))
-        supports = 0.5 * (self.outside(before) + self.outside(after)) @ (a_new - a)
-        return float(loads + supports)
+        loads = EndsWork.between(b, b_new, self.works(after) - self.works(before))
+        return loads + EndsWork.between(self.outside(before), self.outside(after), a_new - a)
 
     def displacement(self, state: InteriorState) -> Floats:
         """Displacement of all unknowns, (n,): the one solution with the interior of a state."""

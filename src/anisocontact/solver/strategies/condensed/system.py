@@ -59,7 +59,7 @@ class ContactSystem(AssembledSystem):
         gathering: scipy.sparse.csr_array | None = None,
     ) -> None:
         self.bulk, self._in_reach = bulk, in_reach
-        self._assembly, self._pass_through = problem.assembly, problem.pass_through
+        self._assembly = problem.assembly
         self.contact_term, self._rigid = problem.contact_term, problem.rigid
         self._sides, self._stabilisation = problem.sides, problem.stabilisation
         self._aid = problem.stabilisation
@@ -216,7 +216,7 @@ class ContactSystem(AssembledSystem):
     @override
     def _go_on(self, x: Vec) -> None:
         self.way.append(self.state(x.array_r))
-        self._pass_through(self._nodal_now)
+        self.contact_term.pass_through()
 
     @override
     def soften(self) -> bool:
