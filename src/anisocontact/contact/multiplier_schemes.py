@@ -14,19 +14,26 @@ from anisocontact.contact.multipliers import (
     simultaneous,
 )
 from anisocontact.contact.nested_uzawa import Graded, NestedUzawa
-from anisocontact.contact.semismooth import Semismooth, Softer
+from anisocontact.contact.semismooth import Semismooth, Slender, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Schemes of an increment, the usual one and what is tried where that fails: with smaller
-#: penalties, in cycles, in such that begin with soft penalties, and with penalties alone where
-#: multipliers are not required.
+#: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, and
+#: with penalties alone where multipliers are not required.
 USUAL, SOFTER, IN_CYCLES, GRADED = "usual", "softer", "in cycles", "graded"
+SLENDER = "slender"
 PENALTIES = "penalties"
 
 #: Their classes, by `Augmentation.multipliers`.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
-    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: NestedUzawa, GRADED: Graded},
+    NEWTON: {
+        USUAL: Semismooth,
+        SOFTER: Softer,
+        SLENDER: Slender,
+        IN_CYCLES: NestedUzawa,
+        GRADED: Graded,
+    },
     UZAWA: {USUAL: Uzawa},
 }
 

@@ -11,6 +11,7 @@ from anisocontact.contact.multiplier_schemes import (
     GRADED,
     IN_CYCLES,
     PENALTIES,
+    SLENDER,
     SOFTER,
     USUAL,
 )
@@ -216,7 +217,10 @@ class Attempts:
         stiff, layered = self._continuation.stiff(), replace(full, layered=True)
         if self._problem.contact_term.simultaneous:
             cycles = IN_CYCLES in self._problem.contact_term.ways
-            ways = _following(searching, full, cycles, trusts, led)
+            schemes = [USUAL, SOFTER]
+            if cycles and not self._problem.linear:
+                schemes.append(SLENDER)
+            ways = _following(searching, full, cycles, trusts, sorted(schemes, key=led.__ne__))
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
@@ -312,26 +316,27 @@ class Attempts:
 
 
 def _following(
-    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, led: str
+    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, schemes: Sequence[str]
 ) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
     Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller
-    penalties, then cycles, where there are any, that begin with soft penalties and with penalties
-    that suit the bodies, then shares of corrections with smaller penalties.
+    penalties, at finite strain with those of slender bodies, then cycles, where there are any, that
+    begin with soft penalties and with penalties that suit the bodies, then shares of corrections
+    with smaller penalties.
 
     Args:
         first: From the extrapolated state.
         last: From the accepted state.
         cycles: Whether multipliers can be found in cycles instead.
-        led: Scheme that led to the last accepted part: smaller penalties come first then.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
+        schemes: Those that follow every correction, in the order in which they are tried: the one
+            that has led to the last accepted part first.
     """
     usual = replace(first, spare=cycles)
-    schemes = [SOFTER, USUAL] if led == SOFTER else [USUAL, SOFTER]
-    if cycles:
-        schemes.append(GRADED)
     begun = [replace(usual, multipliers=one) for one in schemes]
+    if cycles:
+        begun.append(replace(usual, multipliers=GRADED))
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
     ways = [again] if trusts or cycles else []
     if trusts and cycles:

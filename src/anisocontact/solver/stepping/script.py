@@ -20,7 +20,7 @@ from anisocontact.base.typed import typed
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.contact.hints import warn_of_overlaps
-from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES, SOFTER
+from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES, SLENDER, SOFTER
 from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
@@ -192,7 +192,9 @@ class ContactProblem:
 
         schemes = self.system.contact_term.ways
         yield from (
-            partial(by_scheme, one) for one in (SOFTER, GRADED, IN_CYCLES) if one in schemes
+            partial(by_scheme, one)
+            for one in (SOFTER, SLENDER, GRADED, IN_CYCLES)
+            if one in schemes
         )
         graded = GradedPenalties(self.contacts, self.newton)
         if graded.contacts:
