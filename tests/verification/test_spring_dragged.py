@@ -206,7 +206,9 @@ def test_no_stabilisation_where_it_slides_on() -> None:
     solver = Solver(problem, steps, strategy="direct")
     accepted = []
     for one in solver.run():
-        problem.stabilisation.careful = problem.stabilisation.careful or len(accepted) == 1
+        problem.stabilisation.trust.careful = (
+            problem.stabilisation.trust.careful or len(accepted) == 1
+        )
         accepted.append(one)
     taken = [one.energies["stabilisation"] for one in accepted]
     assert taken[-1] == taken[-5]

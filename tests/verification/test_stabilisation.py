@@ -301,7 +301,7 @@ def test_no_springs_where_contact_holds() -> None:
         problem, steps = _block(0.0, evolution="backward-euler"), _loads()
         run = Solver(problem, steps).run()
         accepted = [next(run)]
-        problem.stabilisation.careful = careful
+        problem.stabilisation.trust.careful = careful
         accepted += run
         iterations.append(sum(one.iterations for one in accepted[1:]))
         assert (accepted[-1].energies["stabilisation"] > 0.0) is careful
@@ -322,7 +322,7 @@ def test_contact_is_trusted_again() -> None:
     for number, accepted in enumerate(Solver(problem, steps).run(), 1):
         taken.append(accepted.energies["stabilisation"])
         if number == 3:
-            stabilisation.careful = True
+            stabilisation.trust.careful = True
         if number == 5:
             stabilisation.distrust()
         if number == 6:  # a run that is restarted here goes on alike

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,32 @@ from anisocontact.solver.terms.free_body import FreeBody
 
 #: Sizes of a body that it may come beyond what it could reach when it began to move.
 BEYOND = 2.0
+
+
+def flown_off(
+    bodies: Iterable[FreeBody], begun: Floats, u: Floats
+) -> tuple[FreeBody, float] | None:
+    """A body in a flow that nothing can stop any more, and how far it has come; collective.
+
+    None of its points has anything of a master below it, and it has come farther than to where it
+    could meet one, see `farthest_way`.
+
+    Args:
+        bodies: Bodies that only contact can hold.
+        begun: Displacement of the local nodes when they began to move, (nodes, 3), length.
+        u: That of now, (nodes, 3), length.
+    """
+    for free in bodies:
+        nodes = free.body.nodes
+        way = np.linalg.norm(u[nodes] - begun[nodes], axis=1).max(initial=0.0)
+        below = any([bool(c.located().any()) for c in free.contacts])
+        every = free.contacts[0].space.mesh.comm.allgather((float(way), below))
+        farthest = max(one for one, _ in every)
+        if any(here for _, here in every):
+            continue
+        if farthest > farthest_way(free, begun):
+            return free, farthest
+    return None
 
 
 def farthest_way(free: FreeBody, begun: Floats) -> float:

@@ -23,11 +23,12 @@ from anisocontact.contact import Contact, NotHeldError
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
-from anisocontact.solver.terms.flown_off import farthest_way
+from anisocontact.solver.terms.flown_off import flown_off
 from anisocontact.solver.terms.free_body import FreeBody, closed_points, held_contacts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
+from anisocontact.solver.terms.trust import Trust
 from anisocontact.solver.terms.unsupported_bodies import UnsupportedBodies
 from anisocontact.solver.terms.viscous_flow import ViscousFlow
 
@@ -62,9 +63,7 @@ class Stabilisation(Term):
         energy: What the springs have taken up and dissipated since the start, force times length.
         released: What jumps have set free since the start that bodies came through by `flow`,
             force times length.
-        careful: Whether bodies get springs also where they stick: until the step ends, bodies on
-            springs of their own are caught, or contact has held all through a few accepted parts,
-            see `distrust`.
+        trust: Whether bodies that stick go without springs.
         landed: Whether a body was in the air before the accepted state: how it has moved says
             nothing of the next part.
         flow: What carries the bodies on where their equilibrium is lost.
@@ -83,7 +82,8 @@ class Stabilisation(Term):
     ) -> None:
         self.enabled = enabled
         self.energy = self.released = 0.0
-        self.careful = self.landed = False
+        self.landed = False
+        self.trust = Trust()
         self.notes: list[str] = []
         self.flow = ViscousFlow(model, scale)
         self._contacts = list(contacts)
@@ -96,8 +96,6 @@ class Stabilisation(Term):
         self._before: dict[int, tuple[Flags, Floats]] = {}
         self._fell = self._driven = False
         self._where: Flags | None = None
-        self._caught = self._holding = False
-        self._patience, self._sound = 1, 0
         self._held: list[Supported] = []
         self._frames: list[SupportedFrame] = []
         self._begun: Floats = np.zeros((0, 3))
@@ -140,19 +138,12 @@ class Stabilisation(Term):
 
     def clear(self) -> None:
         """Nothing is free."""
-        self._free, self._loose, self.notes, self.careful = [], [], [], False
-        self._patience, self._sound = 1, 0
+        self._free, self._loose, self.notes = [], [], []
+        self.trust.renew()
 
     def distrust(self) -> None:
-        """Bodies get springs in the next attempts, since one has failed.
-
-        Contact is trusted again once it has held all bodies in as many accepted parts as
-        `_patience` says. They are twice as many each time that it is trusted in vain: so where
-        springs are needed all through a step, few attempts without them are lost.
-        """
-        if self.trusts and not self.careful:
-            self._patience *= 2
-        self.careful, self._sound = True, 0
+        """Bodies get springs in the next attempts, since one has failed."""
+        self.trust.lose(self.trusts)
 
     @property
     def contact_alone(self) -> bool:
@@ -214,7 +205,7 @@ class Stabilisation(Term):
             needed = free.stiffness_in_reach(free.pushed, at_start=True)
             if free.touched(at_start=True):
                 needed = max(needed, free.stiffness_to_land(free.pushed, held, at_start=True))
-            free.trusted = not self.careful and free.may_hold()
+            free.trusted = not self.trust.careful and free.may_hold()
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
     def confine(self, where: Flags | None) -> None:
@@ -320,8 +311,8 @@ class Stabilisation(Term):
             return "contact alone does not hold all bodies"
         lost = self.lost(u)
         # a body on springs has been caught where contact and springs have stiffness again
-        self._holding = self.careful and not lost and all([f.holds() for f in self._free])
-        self._caught = self._holding and all(f.sprung for f in self._free)
+        holding = self.trust.careful and not lost and all([f.holds() for f in self._free])
+        self.trust.look(holding, all(f.sprung for f in self._free))
         return lost
 
     def doubtful(self, u: Floats) -> bool:
@@ -359,25 +350,12 @@ class Stabilisation(Term):
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
 
     def flown_off(self, u: Floats) -> tuple[FreeBody, float] | None:
-        """A body in a flow that nothing can stop any more, and how far it has come; collective.
-
-        None of its points has anything of a master below it, and it has come farther than to where
-        it could meet one, see `farthest_way`.
+        """A body that nothing can stop any more, see `flown_off`; collective.
 
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
         """
-        for free in self._loose:
-            nodes = free.body.nodes
-            way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
-            below = any([bool(c.located().any()) for c in free.contacts])
-            every = self._comm.allgather((float(way), below))
-            farthest = max(one for one, _ in every)
-            if any(here for _, here in every):
-                continue
-            if farthest > farthest_way(free, self._begun):
-                return free, farthest
-        return None
+        return flown_off(self._loose, self._begun, u)
 
     def _carries_nothing(self, free: FreeBody, u: Floats) -> bool:
         """Whether contact carries neither the loads on a body nor more than round-off."""
@@ -414,8 +392,7 @@ class Stabilisation(Term):
     def accept(self, u: Floats) -> float:
         self.energy += self._spent
         self._spent = 0.0
-        self._sound += self._holding
-        self.careful = self.careful and not (self._caught or self._sound >= self._patience)
+        self.trust.accept()
         self.landed = self._fell
         if self.flow.flows:
             steps = self.flow.steps
@@ -429,14 +406,13 @@ class Stabilisation(Term):
 
     @override
     def persistent(self) -> Arrays:
-        trust = [self.careful, self._patience, self._sound]
-        return {"stabilisation": np.array([self.energy, self.released, *trust])}
+        numbers = [self.energy, self.released, *self.trust.numbers()]
+        return {"stabilisation": np.array(numbers)}
 
     @override
     def restore(self, kept: Arrays) -> None:
         self.energy, self.released, *trust = kept["stabilisation"].tolist()
-        careful, self._patience, self._sound = map(int, trust)
-        self.careful = bool(careful)
+        self.trust.restore(trust)
 
     def _add(self, free: FreeBody, step: str, now: bool) -> None:
         text = f"body {free.body.name!r} is free to move: {free.modes}"
