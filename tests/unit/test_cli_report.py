@@ -131,3 +131,16 @@ def test_report_of_what_is_left(quick_pictures, capsys, case, missing):
     assert all(line.startswith("warning: picture ") for line in said.splitlines())
     assert bool(said) == missing.startswith("contact")
     assert "Small block on a turned plate" in (out / "report.html").read_text()
+
+
+@pytest.mark.parametrize("content", [b"", b"<VTKFile type", None])
+def test_a_file_of_fields_that_is_damaged_or_gone(tmp_path, content):
+    """Requirement: named, where VTK gives an empty grid and pictures fail by what is not in it."""
+    from anisocontact.base.errors import InputError
+    from anisocontact.results.solids import read_solid
+
+    path = tmp_path / "0001.vtu"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=r"0001\.vtu' cannot be read"):
+        read_solid(path)

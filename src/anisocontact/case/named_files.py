@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import imported_beside
 from anisocontact.case.amplitudes import FunctionTable
 from anisocontact.case.python_section import MaterialTable
+from anisocontact.mesh.deck import included_files
 
 if TYPE_CHECKING:
     from anisocontact.case.model import Case
@@ -19,17 +21,26 @@ if TYPE_CHECKING:
 
 def named(file: CaseFile) -> Iterator[tuple[str, str]]:
     """Place in the case file, and path as it is written there, of each file it names."""
-    mesh = file.case.mesh
-    if mesh.file is not None:
-        yield "mesh.file", mesh.file
-    for name, section in mesh.files.items():
-        yield f"mesh.files.{name}.path", section.path
+    for place, given in _meshes(file.case):
+        yield place, given
+        path = file.resolve(given)
+        for other in included_files(path) if path.suffix.lower() == ".inp" else []:
+            beside = Path(given).parent / os.path.relpath(other, path.parent)
+            yield place, beside.as_posix()
     for place, given in _programs(file.case):
         yield place, given
         path = file.resolve(given)
         for other in imported_beside(path):
             beside = Path(given).parent / other.relative_to(path.parent)
             yield place, beside.as_posix()
+
+
+def _meshes(case: Case) -> Iterator[tuple[str, str]]:
+    """Place and path of each mesh file."""
+    if case.mesh.file is not None:
+        yield "mesh.file", case.mesh.file
+    for name, section in case.mesh.files.items():
+        yield f"mesh.files.{name}.path", section.path
 
 
 def _programs(case: Case) -> Iterator[tuple[str, str]]:
@@ -48,7 +59,7 @@ def _programs(case: Case) -> Iterator[tuple[str, str]]:
 def fingerprints(file: CaseFile) -> dict[str, str]:
     """What the files that a case names contain: meshes; laws, materials and amplitudes in Python.
 
-    With a Python file come those beside it that it imports.
+    With a Python file come those beside it that it imports, with a deck those that it includes.
 
     Returns:
         SHA-256 of each file, by its path in the case file.

@@ -39,7 +39,7 @@ def checkpoint_of(folder: Path, file: CaseFile) -> Stored | None:
     stored = load_checkpoint(folder)
     if stored is not None:
         before = tomllib.loads(stored.facts["case"])
-        now = tomllib.loads(file.path.read_text(encoding="utf-8"))
+        now = tomllib.loads(file.path.read_text(encoding="utf-8-sig"))
         check_same(before, now, stored.facts["begun"])
         check_files(stored.facts["files"], file)
         return stored
@@ -82,5 +82,5 @@ def _of_state(tables: Mapping[str, Any], begun: int) -> dict[str, Any]:
 def _rows(table: Path) -> int:
     if not table.is_file():
         return 0
-    with table.open(encoding="utf-8", newline="") as file:
+    with table.open(encoding="utf-8", errors="replace", newline="") as file:
         return sum(1 for _ in csv.reader(file))

@@ -97,7 +97,7 @@ def load_trace(path: str | Path) -> Trace:
     path = Path(path)
     data = read_table(path)
     trace = validate_trace(data)
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text(encoding="utf-8-sig")
     parent = path.resolve().parent.name
     name = parent if path.stem in ("case", "trace") and parent else path.stem
     return Trace(trace.case, trace.interface, trace.load, trace.group, trace.compared, text, name)

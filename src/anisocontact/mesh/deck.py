@@ -104,6 +104,43 @@ def read_cards(path: Path, depth: int = 0) -> list[Card]:
         OSError: It cannot be read.
     """
     cards: list[Card] = []
+    for card in _own_cards(path):
+        if card.name != "INCLUDE":
+            cards.append(card)
+            continue
+        if depth == DEPTH:
+            raise InputError(f"line {card.line}: more than {DEPTH} files include each other")
+        other = _included(path, card)
+        if not other.is_file():
+            text = f"line {card.line}: the included file {str(other)!r} does not exist"
+            raise InputError(text)
+        cards += read_cards(other, depth + 1)
+    return cards
+
+
+def included_files(path: Path) -> list[Path]:
+    """Files that a deck includes, and those that these include, each once.
+
+    Args:
+        path: The deck; what is wrong with it is left to who reads it.
+    """
+    found = [path]
+    for file in found:
+        try:
+            others = [_included(file, c) for c in _own_cards(file) if c.name == "INCLUDE"]
+        except (InputError, OSError):
+            continue
+        found += [one for one in dict.fromkeys(others) if one not in found and one.is_file()]
+    return found[1:]
+
+
+def _included(path: Path, card: Card) -> Path:
+    """The file that a card of a deck includes."""
+    return path.parent / card.option("INPUT").replace("\\", "/")
+
+
+def _own_cards(path: Path) -> Iterator[Card]:
+    """The cards of a file, those that include others as they stand."""
     head: tuple[str, int] | None = None
     data: list[str] = []
     for number, raw in enumerate(path.read_text("utf-8", errors="replace").splitlines(), 1):
@@ -113,32 +150,23 @@ def read_cards(path: Path, depth: int = 0) -> list[Card]:
         if head is not None and not data and head[0].endswith(","):
             head = (head[0] + line, head[1])
         elif line.startswith("*"):
-            cards += _finished(head, data, path, depth)
+            if head is not None:
+                yield _card(*head, data)
             head, data = (line, number), []
         elif head is None:
             raise InputError(f"line {number}: data in front of the first keyword")
         else:
             data.append(line)
-    return cards + _finished(head, data, path, depth)
+    if head is not None:
+        yield _card(*head, data)
 
 
-def _finished(head: tuple[str, int] | None, data: list[str], path: Path, depth: int) -> list[Card]:
-    """A card, or those of the file that it includes; none where nothing has begun."""
-    if head is None:
-        return []
-    text, number = head
+def _card(text: str, number: int, data: list[str]) -> Card:
+    """A card from its head and the lines below it."""
     keyword, *rest = text[1:].split(",")
     options = {}
     for option in rest:
         name, _, value = option.partition("=")
         if name.strip():
             options["".join(name.split()).upper()] = value.strip().strip('"')
-    card = Card("".join(keyword.split()).upper(), options, tuple(data), number)
-    if card.name != "INCLUDE":
-        return [card]
-    other = path.parent / card.option("INPUT").replace("\\", "/")
-    if depth == DEPTH:
-        raise InputError(f"line {number}: more than {DEPTH} files include each other")
-    if not other.is_file():
-        raise InputError(f"line {number}: the included file {str(other)!r} does not exist")
-    return read_cards(other, depth + 1)
+    return Card("".join(keyword.split()).upper(), options, tuple(data), number)

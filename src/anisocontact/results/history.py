@@ -43,14 +43,18 @@ class HistoryTable:
         """Go on behind the rows of a state; later ones are cut off.
 
         Raises:
-            InputError: The file has fewer rows than the run has written.
+            InputError: The file has fewer rows than the run has written, or is no table.
         """
         self._columns, self._size = list(state["columns"]), state["size"]
         self._rows = state["rows"]
         if not self._size:
             self._path.unlink(missing_ok=True)
             return
-        found = _cells(self._path) if self._path.is_file() else []
+        try:
+            found = _cells(self._path) if self._path.is_file() else []
+        except (ValueError, csv.Error) as error:
+            text = f"'{self._path}' cannot be read: {error}"
+            raise InputError(f"{text}: put the file back, or run without --restart") from None
         header, *rows = found or [[]]
         if len(rows) < self._rows:
             raise InputError(

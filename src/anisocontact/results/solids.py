@@ -22,6 +22,7 @@ from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.errors import InputError
 from anisocontact.results.section_plane import SectionPlane
 
 #: Angle between facets from which on an edge is seen, degrees.
@@ -103,11 +104,17 @@ class Solid:
 
 
 def read_solid(path: Path) -> Solid:
-    """Read what a run has written of its bodies."""
+    """Read what a run has written of its bodies.
+
+    Raises:
+        InputError: The file is gone or damaged.
+    """
     parallel = path.suffix == ".pvtu"
     reader: Any = vtkXMLPUnstructuredGridReader() if parallel else vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
+    if reader.GetErrorCode() or not reader.GetOutput().GetNumberOfPoints():
+        raise InputError(f"'{path}' cannot be read")
     return Solid(reader.GetOutput())
 
 

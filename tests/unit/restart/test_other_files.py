@@ -88,6 +88,66 @@ def test_restart_with_another_mesh(meshed: Path, capsys: pytest.CaptureFixture[s
     assert run(meshed, "--restart") == 0
 
 
+#: One hexahedron in a deck whose faces are those of a file that it includes.
+DECK = """*INCLUDE, INPUT=parts/nodes.inc
+*ELEMENT, TYPE=C3D8, ELSET=block
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*SOLID SECTION, ELSET=block
+"""
+INCLUDED = {
+    "nodes.inc": "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n"
+    "7,1,1,1\n8,0,1,1\n*INCLUDE, INPUT=faces.inc\n",
+    "faces.inc": "*SURFACE, NAME=bottom\n1, S1\n*SURFACE, NAME=top\n1, S2\n",
+}
+
+
+@pytest.mark.parametrize("changed", sorted(INCLUDED))
+def test_restart_with_another_file_of_a_deck(
+    meshed: Path, capsys: pytest.CaptureFixture[str], changed: str
+) -> None:
+    """Requirement: a deck is what it includes, too, at any depth."""
+    meshed.with_name("block.inp").write_text(DECK)
+    parts = meshed.with_name("parts")
+    parts.mkdir()
+    for name, text in INCLUDED.items():
+        (parts / name).write_text(text)
+    meshed.write_text(meshed.read_text().replace("block.msh", "block.inp"))
+    assert run(meshed) == 0
+    assert run(meshed, "--restart") == 0
+    capsys.readouterr()
+    (parts / changed).write_text(INCLUDED[changed] + "** another\n")
+    assert run(meshed, "--restart") == 2
+    assert f"'parts/{changed}' has changed since the run" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe binary", b"a\0b\n\xc3", b""])
+def test_restart_with_a_table_that_is_none(
+    meshed: Path, capsys: pytest.CaptureFixture[str], content: bytes
+) -> None:
+    """Requirement: one line that names the file, no internal error."""
+    assert run(meshed) == 0
+    table = meshed.parent / "out" / "history.csv"
+    table.write_bytes(content)
+    capsys.readouterr()
+    assert run(meshed, "--restart") == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"error: '{table}' ")
+    assert line.endswith("put the file back, or run without --restart")
+    assert table.read_bytes() == content
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "crlf"])
+def test_restart_with_a_case_file_of_another_system(meshed: Path, encoding: str) -> None:
+    """Requirement: a mark of the byte order, or other ends of lines, keep no run from going on."""
+    text = meshed.read_text()
+    if encoding == "crlf":
+        meshed.write_bytes(text.replace("\n", "\r\n").encode())
+    else:
+        meshed.write_text(text, encoding=encoding)
+    assert run(meshed) == 0
+    assert run(meshed, "--restart") == 0
+
+
 #: Keeps a folder until it is told to end, or killed.
 HOLDER = """
 import sys
