@@ -13,14 +13,14 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.solver.stepping.graded_penalties import GradedPenalties
+from anisocontact.solver.stepping.graded_penalties import SOFT, GradedPenalties
 from anisocontact.solver.strategies.newton import NewtonResult
 
 
 def tried(largest: float) -> tuple[list[float], NewtonResult]:
     """Shares of the penalties where raises up to `largest` converge, in three corrections each."""
     shares: list[float] = []
-    converged = [1e-3 / largest]
+    converged = [SOFT / largest]
 
     def solve(x: Any, full_steps: bool) -> NewtonResult:
         assert full_steps
@@ -40,18 +40,18 @@ def tried(largest: float) -> tuple[list[float], NewtonResult]:
 
 def test_penalties_are_raised_by_tens() -> None:
     shares, result = tried(10.0)
-    assert shares == pytest.approx([1e-3, 1e-2, 1e-1, 1.0])
-    assert (result.reason, result.iterations) == ("", 12)
+    assert shares == pytest.approx([1e-4, 1e-3, 1e-2, 1e-1, 1.0])
+    assert (result.reason, result.iterations) == ("", 15)
 
 
 def test_a_raise_that_fails_is_halved_in_its_exponent() -> None:
     shares, result = tried(4.0)
     root = 10.0**0.5
-    assert shares == pytest.approx([1e-3, 1e-2, *(1e-3 * root**k for k in range(1, 7))])
-    assert (result.reason, result.iterations) == ("", 24)
+    assert shares == pytest.approx([1e-4, 1e-3, *(1e-4 * root**k for k in range(1, 9))])
+    assert (result.reason, result.iterations) == ("", 30)
 
 
 def test_raises_that_all_fail_end() -> None:
     shares, result = tried(1.2)
-    assert shares == pytest.approx([1e-3, *(1e-3 * 10.0**k for k in (1.0, 0.5, 0.25))])
+    assert shares == pytest.approx([1e-4, *(1e-4 * 10.0**k for k in (1.0, 0.5, 0.25))])
     assert result.reason

@@ -78,8 +78,8 @@ PENALTIES = 'method = "penalty"\npass = "mortar"'
         (MULTIPLIERS, 0.0, 70),
         (MULTIPLIERS, 0.3, 120),
         (PENALTIES, 0.0, 66),
-        (PENALTIES, 0.3, 151),
-        (POINTS, 0.3, 102),
+        (PENALTIES, 0.3, 142),
+        (POINTS, 0.3, 95),
     ],
     ids=["multipliers", "multipliers-friction", "nodes", "nodes-friction", "points-friction"],
 )
@@ -96,6 +96,51 @@ def test_force_that_lifts(method: str, friction: float, most: int, tmp_path: Pat
     free = (24.0 * locked * LIFT / weight) ** 0.25
     assert lifted.reactions["strip.right"][1] == pytest.approx(0.5 * weight * free, rel=1e-3)
     assert lifted.iterations <= most
+
+
+BASE = """
+[mesh.rectangle.base]
+origin = [-2, -2]
+size = [44, 2]
+cells = [50, 3]
+[material.base]
+model = "linear-elastic"
+E = 1e4
+nu = 0
+"""
+
+
+@pytest.mark.parametrize("base", [False, True], ids=["floor", "block"])
+def test_a_heavier_strip_lies_on_points(base: bool, tmp_path: Path) -> None:
+    """Thirty times the weight, lifted farther, coarser cells, points on a floor and on a block.
+
+    Requirement: one increment without a cut, in 80 corrections, 71 and 74 as counted and a tenth,
+    and the force to 2 %. Source: as above; the free length is known to a cell in 26, and the block
+    is as soft as the strip. Points that slip with the first soft penalties went on slipping to and
+    fro: a thousand corrections and three or four cuts.
+    """
+    weight, lift, cells = 0.03, 0.3, 60
+    case = CASE.replace("METHOD", POINTS).replace("FRICTION", "0.3")
+    case = case.replace("cells = [80, 4]", f"cells = [{cells}, 2]")
+    case = case.replace("nu = 0\n", "nu = 0.3\n")
+    case = case.replace(f"y = -{WEIGHT}", f"y = -{weight}").replace(f"y = {LIFT}", f"y = {lift}")
+    if base:
+        case = case.replace('master = "floor"', 'master = "base.top"')
+        case = case.replace("[[contact]]", f"{BASE}[[contact]]").replace(
+            '{ "strip.left" = { x = 0 } }',
+            '{ "strip.left" = { x = 0 }, "base.bottom" = { x = 0, y = 0 } }',
+        )
+    (tmp_path / "case.toml").write_text(case)
+    built = build(load(tmp_path / "case.toml"))
+    cuts: list[Any] = []
+    *_, lifted = built.solver.run(on_cut=cuts.append, on_warning=lambda _: None)
+    assert not cuts
+    assert lifted.iterations <= 80
+    bending = YOUNG * HEIGHT**3 / 12.0 / (1.0 - 0.3**2)
+    locked = bending + YOUNG / 2.6 * HEIGHT * (LENGTH / cells) ** 2 / 12.0
+    free = (24.0 * locked * lift / (weight * HEIGHT)) ** 0.25
+    force = 0.5 * weight * HEIGHT * free
+    assert lifted.reactions["strip.right"][1] == pytest.approx(force, rel=0.02)
 
 
 def test_a_script_lifts_it() -> None:

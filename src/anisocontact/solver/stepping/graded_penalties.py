@@ -3,6 +3,9 @@
 The active set of stiff penalties on a slender body, which bends, changes by a point at the edge of
 the contact in each correction, and points that slip change sides. Soft ones spread the pressure
 over all points that will touch: most have their status when penalties are those of the law.
+
+Adhesion has to be so soft to begin with that the points stick: where their elastic force is beyond
+friction in the first corrections all of them slip, and go on slipping to and fro.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 
 #: Share of the penalties to begin with; what they are raised by, and the least after failures.
-SOFT, RAISE, LEAST = 1e-3, 10.0, 1.5
+SOFT, RAISE, LEAST = 1e-4, 10.0, 1.5
 
 
 class GradedPenalties:
