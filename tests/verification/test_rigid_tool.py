@@ -60,7 +60,7 @@ def test_a_meshed_tool_that_follows_a_point_is_rigid(mortar, bound):
     assert found[0] == pytest.approx(found[1], abs=bound * abs(found[1][2]))
 
 
-def tool_on_block(kind: str, young: float, mortar: bool):
+def tool_on_block(kind: str, young: float, mortar: bool, order: int = 2):
     """A plate whose skin follows a point, on a block; the steps press, then let it go along z."""
     from anisocontact.bulk import make_material
     from anisocontact.contact import Contact
@@ -71,7 +71,8 @@ def tool_on_block(kind: str, young: float, mortar: bool):
     from anisocontact.solver import CoupledFace, Problem, Step
 
     block = make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(2, 2, 2), order=2)
-    plate = make_shape("box", origin=(-0.5, -0.5, 1), size=(2, 2, 0.5), cells=(3, 3, 2), order=2)
+    size, cells = (2, 2, 0.5), (3, 3, 2)
+    plate = make_shape("box", origin=(-0.5, -0.5, 1), size=size, cells=cells, order=order)
     law = ContactLaw(
         NormalLaw(penalty=1e4), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.2, 0.2))
     )
@@ -117,6 +118,56 @@ def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
         assert force[2] == pytest.approx(-8.0, rel=1e-8)
         found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
     assert found[0] == pytest.approx(found[1], abs=1e-8 * abs(found[1][2]))
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+@pytest.mark.parametrize("mortar", [True, False])
+def test_the_order_of_a_rigid_tool_changes_nothing(mortar, strategy):
+    """A flat plate of order 1 and of order 2, on a block of order 2.
+
+    Requirement: the block gets the same force and moment. Tolerance: Newton's, 1e-8 of the force.
+    """
+    found = []
+    for order in (1, 2):
+        _, contact, problem, steps = tool_on_block("neo-hookean", 1.0, mortar, order)
+        run(problem, *steps, strategy=strategy)
+        found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
+    assert found[0] == pytest.approx(found[1], abs=1e-8 * abs(found[1][2]))
+
+
+@pytest.mark.parametrize("slave", ["block", "plate"])
+def test_the_order_of_a_rigid_tool_changes_nothing_in_the_plane(slave):
+    """The same in plane strain, as master at nodes and as slave at points; the tool drags."""
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.laws import Friction
+    from anisocontact.mesh import Body, build_mesh, make_idealisation, make_selector, make_shape
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import CoupledFace, Problem, Step
+
+    block = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(4, 2), order=2)
+    steps = (
+        Step("press", 1, {"block.bottom": {"x": 0.0, "y": 0.0}}, motion={"tool": {"y": -0.05}}),
+        Step("drag", 2, motion={"tool": {"x": 0.1}}),
+    )
+    found = []
+    for order in (1, 2):
+        plate = make_shape("rectangle", origin=(-1, 1), size=(3, 1), cells=(7, 2), order=order)
+        bodies = [Body("block", block), Body("plate", plate)]
+        skin = {"plate.skin": [make_selector("all")]}
+        model = build_mesh(bodies, skin, make_idealisation("plane-strain"))
+        tool = RigidBody("tool", (0.5, 1.0, 0.0), free=True)
+        sides = {"block": "block.top", "plate": "plate.bottom"}
+        other = next(group for body, group in sides.items() if body != slave)
+        # at nodes, or at the same points
+        how = {"mortar": True} if slave == "block" else {"mortar": False, "degree": 3}
+        contact = Contact(model, sides[slave], other, Friction(coefficients=0.3), **how)
+        rubber = make_material("neo-hookean", E=100.0, nu=0.3)
+        materials = {"block": rubber, "plate": rubber}
+        problem = Problem(model, materials, [contact], coupled=[CoupledFace("plate.skin", tool)])
+        run(problem, *steps)
+        found.append(contact.resultant()[0])
+    assert found[0] == pytest.approx(found[1], abs=1e-8 * np.linalg.norm(found[1]))
 
 
 TOOL = """

@@ -115,7 +115,9 @@ def make_parts(
     like = layout.new_vector()
     tied = _tied(model, like, contacts, connections)
     guides = _guides(model, connections.symmetry, like, tied, faces)
-    constraints = Constraints(like, constrain_middles(model, like), tied, guides, faces)
+    constraints = Constraints(
+        like, constrain_middles(model, like, faces.whole), tied, guides, faces
+    )
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)

@@ -58,7 +58,8 @@ class FaceOnBody:
         spec: What is coupled.
         model: Mesh with the group.
         linear: Whether the body is at small strain.
-        tied: Nodes that follow from others, which are coupled.
+        tied: Nodes that follow from others, which are coupled; those of a body that follows as a
+            whole do all the same.
 
     Attributes:
         group: Facet group.
@@ -82,7 +83,7 @@ class FaceOnBody:
             nodes = fem.locate_dofs_topological(space, model.idealisation.dim - 1, facets)
         owned = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int64)
         self.group, self.body, self._linear = spec.group, spec.body, linear
-        self.nodes: Ints = np.setdiff1d(owned, tied)
+        self.nodes: Ints = np.setdiff1d(owned, tied) if self.skin is None else owned
         x = np.asarray(space.tabulate_dof_coordinates())[self.nodes]
         self.arms: Floats = x - spec.body.reference
         self.constrained: Flags = np.ones((len(self.nodes), 3), dtype=np.bool_)
