@@ -256,6 +256,7 @@ class AnalyticMaster(Master):
             before=last,
             now=places,
             outward=self.into_frame(outward),
+            touched=before.response.status != 0,
             closed=now.response.status != 0,
             located=everywhere,
             had=everywhere,
@@ -265,6 +266,7 @@ class AnalyticMaster(Master):
             reach=np.inf,
             look=self._look,
             comm=self._comm,
+            idle=np.zeros(len(now.points), dtype=bool),
         )
 
     @override

@@ -136,6 +136,7 @@ class MeshedMaster(Master):
             before=carried(before.points, then[nodes], there[nodes]),
             now=now.points,
             outward=sides.points.outward_of(sides.points.at(there)),
+            touched=before.response.status != 0,
             closed=now.response.status != 0,
             located=self.located(now.response.state),
             had=self.located(state),
@@ -145,6 +146,7 @@ class MeshedMaster(Master):
             reach=self.reach,
             look=sides.look,
             comm=self._comm,
+            idle=np.zeros(len(now.points), dtype=bool),
         )
 
     def _may_leave_gathered(self, u: Floats) -> bool:

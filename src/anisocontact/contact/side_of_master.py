@@ -49,6 +49,7 @@ class SideOfMaster:
         before: Where they were in the accepted state, carried along with the master, (n, 3).
         now: Where they are in the trial, (n, 3), length.
         outward: Outward normals of the slave in the trial, (n, 3).
+        touched: Whether they were in contact in the accepted state, (n,).
         closed: Whether they are in contact, (n,).
         located: Whether the trial has found the master below them, (n,).
         had: Whether the accepted state had, (n,).
@@ -58,11 +59,13 @@ class SideOfMaster:
         reach: Distance within which the master is searched, length.
         look: The master from points, given these and their numbers.
         comm: Communicator of the mesh.
+        idle: Whether they are closed as if pressed, and carry nothing, (n,).
     """
 
     before: Floats
     now: Floats
     outward: Floats
+    touched: Flags
     closed: Flags
     located: Flags
     had: Flags
@@ -72,6 +75,7 @@ class SideOfMaster:
     reach: float
     look: Callable[[Floats, Ints], Seen]
     comm: Any
+    idle: Flags
 
     def from_behind(self) -> Flags:
         """Points in contact whose slave faces the same way as the master; none if they are few."""
@@ -94,6 +98,7 @@ class SideOfMaster:
             closed=self.closed | behind,
             normal=np.where(behind[:, None], normal, self.normal),
             areas=np.where(behind, areas, self.areas),
+            idle=behind & ~self.closed,
         )
 
     def through(self) -> tuple[Ints, Floats]:
@@ -111,6 +116,28 @@ class SideOfMaster:
         if len(which):
             crossed = self._crossed(which, start, turn)
         return which[crossed], depth[crossed]
+
+    def inside(self) -> tuple[Ints, Floats]:
+        """Points without force that have come to lie deep behind the master from in front of it.
+
+        None where no more of them are than an edge may lose that digs in: few beside those that
+        the accepted state had in contact. Without any of those the body may have come by any way.
+
+        Returns:
+            Their numbers and the depth of each, (k,) each, length.
+        """
+        start, turn = self._frame()
+        which = np.flatnonzero(self.idle | self._lost())
+        seen = self.look(self.now[which], which)
+        deep = seen.on & (seen.gap < -DEEP * self.size)
+        which, depth = which[deep], -seen.gap[deep]
+        crossed = np.zeros(len(which), dtype=bool)
+        if len(which):
+            crossed = self._crossed(which, start, turn)
+        which, depth = which[crossed], depth[crossed]
+        counts = self.comm.allreduce(np.array([len(which), np.count_nonzero(self.touched)]))
+        few = counts[1] == 0 or counts[0] <= CRUSHED * counts[1]
+        return (which[:0], depth[:0]) if few else (which, depth)
 
     def _lost(self) -> Flags:
         """Open points that have left the side of the master on which they were."""

@@ -140,18 +140,20 @@ class SidesKept:
         if behind > WORTH_A_WORD:
             self.partly.append(Behind(name, behind, depth, watched.one.name.split(" on ")[-1]))
         pressed = where.from_behind()
-        gone, below = where.through()
+        gone, inside = where.through(), where.inside()
         far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
-        counts = np.array([np.count_nonzero(pressed), len(gone), len(pressed)])
-        turned, through, points = (int(n) for n in comm.allreduce(counts))
+        counts = np.array([np.count_nonzero(pressed), len(gone[0]), len(inside[0]), len(pressed)])
+        turned, through, sunk, points = (int(n) for n in comm.allreduce(counts))
         known = watched.body is not None and whole
         if turned and (behind > HANGING or not known):
             text = f"body {name!r} has turned over: {turned} slave points are pressed from behind"
             yield self._culprit(watched, text + far, np.flatnonzero(pressed))
-        if through > CRUSHED * points:
+        many = through > CRUSHED * points
+        if many or sunk:
+            lost, below = gone if many else inside
             deepest = max(comm.allgather(float(below.max(initial=0.0))))
-            text = f"body {name!r} has gone through its master: {through} slave points"
-            yield self._culprit(watched, f"{text} are up to {deepest:.3g} behind it", gone)
+            text = f"body {name!r} has gone through its master: {through if many else sunk} slave"
+            yield self._culprit(watched, f"{text} points are up to {deepest:.3g} behind it", lost)
         # out of contact a body may be anywhere that it has not come to through the master
         if comm.allreduce(int(np.count_nonzero(where.closed))) and behind > MOST_BEHIND:
             text = f"body {name!r} is behind its master with {behind:.0%} of it"
