@@ -379,3 +379,13 @@ def test_every_argument_has_help():
     for parser in parsers:
         for action in parser._actions:
             assert action.help or action.dest == "command"
+
+
+@pytest.mark.parametrize("given", ["", " "])
+def test_an_empty_results_folder_is_refused(case, capsys, monkeypatch, given):
+    """A variable of a shell that was never set is no wish for results/<name>: one line."""
+    monkeypatch.chdir(case.parent)
+    assert main(["run", str(case), "-o", given]) != 0
+    line = f"error: --output: {given!r} given, the name of a folder needed"
+    assert capsys.readouterr().err.splitlines() == [line]
+    assert not (case.parent / "results").exists()

@@ -11,11 +11,12 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.base.errors import ModelWarning
+from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import Contact, coarse_slaves
+from anisocontact.contact.hidden_borders import hidden_borders, overlapped
 from anisocontact.contact.hints import faceted, overlapping
 from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import ContactLaw
@@ -468,3 +469,40 @@ def test_chords_that_scatter_pressures_are_told(slave, master, load, told):
     if slave == "ring.inner":
         assert (off > 0.5) == told
     assert len(faceted([contact])) == told
+
+
+@pytest.mark.parametrize(
+    ("cells", "met"), [(4, 0.5625), (5, 1.44), (6, 1.0), (7, 0.7346938775510204)]
+)
+def test_a_master_that_ends_inside_slave_facets_is_told(cells, met):
+    """A block of 1 x 1 on the middle of a slave of 3 x 3, whose 2 x 2 points meet more or less.
+
+    Requirement: the area that points meet is counted by hand; a quarter missed is told (the force
+    of 4 cells is 40 % too small), one met twice only where layers are soft (5 cells: 2 % with stiff
+    ones), and nothing at slave nodes, of the smaller side, or where facets end with the master.
+    Tolerance: 8 points along a side find what is covered of a facet to a sixteenth of it.
+    """
+    base = BoxSpec((-1, -1, -1), (3, 3, 1), (cells, cells, 1))
+    model = build_box({"base": base, "block": BoxSpec((0, 0, 0), (1, 1, 1), (3, 3, 1))})
+    contact = Contact(model, "base.top", "block.bottom", LAW, mortar=False)
+    found = overlapped(contact.master.sides, contact.master.positions)
+    np.testing.assert_allclose(found.met, met, rtol=1e-12)
+    np.testing.assert_allclose(found.covered, 1.0, atol=0.1)
+    lines = hidden_borders([contact])
+    assert len(lines) == (met < 0.75)
+    assert all("ends inside facets of the slave" in line for line in lines)
+    for slave, master, mortar in (
+        ("base.top", "block.bottom", True),
+        ("block.bottom", "base.top", False),
+    ):
+        assert not hidden_borders([Contact(model, slave, master, LAW, mortar=mortar)])
+
+
+def test_a_master_in_a_symmetry_plane_is_refused_as_a_slave_is():
+    """Held along its normal the plane would carry the load, and the body below feel nothing."""
+    model = _model()
+    contact = Contact(model, "pin.bottom", "base.top", law=LAW, mortar=False)
+    steel = make_material("linear-elastic", E=100.0, nu=0.3)
+    for group, side in (("base.top", "master"), ("pin.bottom", "slave")):
+        with pytest.raises(InputError, match=f"the {side} of contact .*held along its normal"):
+            Problem(model, {"base": steel, "pin": steel}, [contact], symmetry=[group])

@@ -13,7 +13,7 @@ from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import Output, say
 from anisocontact.results import report_process
-from anisocontact.results.files import check_folder
+from anisocontact.results.files import check_folder, results_folder
 from anisocontact.results.lock import locked
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def command(arguments: argparse.Namespace) -> int:
     """Solve a case; 0 if it is done, 3 if it stopped before its end."""
     file = load(arguments.case)
-    folder = Path(arguments.output or Path("results") / file.name)
+    folder = results_folder(arguments.output, file.name)
     if not arguments.restart:
         check_folder(folder, arguments.overwrite)
 

@@ -14,7 +14,7 @@ from anisocontact.cli.output import say
 from anisocontact.interface import Interface
 from anisocontact.interface.jumping_forces import jumping_forces
 from anisocontact.point import Group, History, Load, StoppedError, drive
-from anisocontact.results.files import check_folder
+from anisocontact.results.files import check_folder, results_folder
 from anisocontact.results.lock import locked
 from anisocontact.results.trace import write_trace
 
@@ -22,7 +22,7 @@ from anisocontact.results.trace import write_trace
 def command(arguments: argparse.Namespace) -> int:
     """Drive a point; 0 if it is done, 3 if it stopped before its end."""
     trace = load_trace(arguments.case)
-    folder = Path(arguments.output or Path("results") / trace.name)
+    folder = results_folder(arguments.output, trace.name)
     check_folder(folder, arguments.overwrite)
     with locked(folder) as warning:
         if warning:

@@ -13,6 +13,7 @@ from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.facet_mesh import facet_areas, node_positions
 from anisocontact.contact.field_hints import doubtful_fields
+from anisocontact.contact.hidden_borders import hidden_borders
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.sharp_edges import SMOOTH
@@ -117,7 +118,9 @@ _SCATTER = (
 
 
 def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
-    """Contacts whose slave had better be the master, a line each: `coarse_slaves`, `stiff_slaves`.
+    """Contacts whose slave had better be the master, a line each.
+
+    As of `coarse_slaves`, or else `hidden_borders`, and `stiff_slaves`.
 
     Args:
         contacts: The contacts.
@@ -128,7 +131,8 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
     return [
         line + _angles(contact)
         for contact in contacts
-        for line in [*coarse_slaves([contact]), *stiff_slaves([contact])]
+        for line in (coarse_slaves([contact]) or hidden_borders([contact]))
+        + stiff_slaves([contact])
     ]
 
 

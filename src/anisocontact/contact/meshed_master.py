@@ -50,6 +50,11 @@ class MeshedMaster(Master):
         return self._gathered.connected_to(self.sides.slave)
 
     @property
+    def positions(self) -> Floats:
+        """Where the nodes of both sides are now, as slave points and facets number them, length."""
+        return self._nodes.now
+
+    @property
     def facets(self) -> Locals:
         """Nodes of the facets that this rank has, (m, k)."""
         return self._gathered.local_names(self.sides.master.nodes)

@@ -102,6 +102,21 @@ def clear_drafts(folder: Path) -> None:
                     path.unlink()
 
 
+def results_folder(given: str | None, name: str) -> Path:
+    """Where results go: the folder given, or results/<name>.
+
+    Args:
+        given: What the user asks for, if anything.
+        name: Name of the case.
+
+    Raises:
+        InputError: It is empty, as a variable of a shell that was never set.
+    """
+    if given is not None and not given.strip():
+        raise InputError(f"{given!r} given, the name of a folder needed", "--output")
+    return Path("results") / name if given is None else Path(given)
+
+
 def check_folder(folder: Path, overwrite: bool = False) -> None:
     """Refuse a folder that holds something we may not replace.
 

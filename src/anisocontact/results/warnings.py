@@ -10,6 +10,7 @@ from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
 from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.contact.friction_hints import doubtful_friction
+from anisocontact.contact.hidden_borders import CLOSE, hidden_borders
 from anisocontact.contact.hints import (
     MISSED,
     faceted,
@@ -199,6 +200,8 @@ def at_end(
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
+        if entry["initial_gap"] > CLOSE * entry["facet_size"]:  # the others were told at the start
+            found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]
     for name, text in _TAKEN.items():
         taken, work = abs(energy[name]), abs(energy["external"])

@@ -102,7 +102,7 @@ def make_parts(
 
     Raises:
         InputError: A body without material, a material without body, two contacts of one name,
-            one on another model, or a slave in a plane of symmetry.
+            one on another model, or a slave or master in a plane of symmetry.
     """
     _check(model, materials, contacts)
     _check_planes(contacts, connections.symmetry)
@@ -199,12 +199,20 @@ def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -
 
 
 def _check_planes(contacts: Sequence[Contact], symmetry: Sequence[str]) -> None:
-    """Refuse slaves in planes of symmetry: held along their normal, they meet nothing."""
+    """Refuse slaves and masters in planes of symmetry: held along their normal, planes carry."""
     for contact in contacts:
-        if contact.slave in symmetry:
-            text = f"{contact.slave!r} given, the slave of contact {contact.name!r}"
-            cure = "held along its normal it would carry no pressure; name the cut faces"
-            raise InputError(f"{text}: {cure}", "symmetry")
+        for group, side, what in zip(contact.groups, ("slave", "master"), _HELD, strict=False):
+            if group in symmetry:
+                text = f"{group!r} given, the {side} of contact {contact.name!r}"
+                cure = f"held along its normal {what}; name the cut faces"
+                raise InputError(f"{text}: {cure}", "symmetry")
+
+
+#: What comes of a slave and of a master in a plane of symmetry.
+_HELD = (
+    "it would carry no pressure",
+    "its body would feel no pressure, which the plane would carry",
+)
 
 
 def _check(
