@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
+from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
@@ -385,3 +386,16 @@ def test_what_a_larger_part_has_shown_is_the_reason(monkeypatch: pytest.MonkeyPa
     )
     with pytest.raises(StoppedError, match=f"{said}; 1 cuts"):
         list(Solver(_problem("plane"), [step], limits=Limits(smallest=0.25)).run())
+
+
+def test_a_few_points_inside_a_master_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of nine slave points lies inside, which `SideOfMaster.inside` tells and nothing else does.
+
+    Requirement: the state is refused, and the line says how many points and how deep.
+    """
+    monkeypatch.setattr(SideOfMaster, "through", lambda self: (np.zeros(0, int), np.zeros(0)))
+    place = _shifted(0.0, 0.0, -1e-3)
+    assert _said(_problem("plane"), place) == ""
+    monkeypatch.setattr(SideOfMaster, "inside", lambda self: (np.array([3]), np.array([0.4])))
+    said = _said(_problem("plane"), place)
+    assert "has gone through its master: 1 slave points are up to 0.4 behind it" in said
