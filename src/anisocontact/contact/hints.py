@@ -233,7 +233,7 @@ def pressed_aside(contacts: Sequence[Contact]) -> list[str]:
 
     At a sharp edge of a profile the closest point of a node that has got into the tool by more than
     its distance from the edge is on the other face, which pushes it aside: by how much depends on
-    the increments. Collective.
+    the increments. So are the edges of a side of a body that stands on a plane. Collective.
 
     Args:
         contacts: The contacts, in their accepted state.
@@ -247,9 +247,10 @@ def pressed_aside(contacts: Sequence[Contact]) -> list[str]:
         count = one.space.mesh.comm.allreduce(int(aside.sum()))
         if count:
             found.append(
-                f"contact of {one.name}: at a sharp edge the face of the master that stands across "
-                f"the slave presses its points ({count}) aside, and what they carry depends on the "
-                "increments; round the edge by a facet or so (`rounding` of a profile)"
+                f"contact of {one.name}: a face of the master that stands across the slave presses "
+                f"its points ({count}) aside, and what they carry depends on the increments; at a "
+                "sharp edge of the master round that by a facet or so (`rounding` of a profile), "
+                "elsewhere let the slave be the face of the body that looks at the master"
             )
     return found
 
