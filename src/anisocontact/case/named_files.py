@@ -12,7 +12,6 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import imported_beside
 from anisocontact.case.amplitudes import FunctionTable
 from anisocontact.case.python_section import MaterialTable
-from anisocontact.mesh.deck import included_files
 
 if TYPE_CHECKING:
     from anisocontact.case.model import Case
@@ -21,6 +20,8 @@ if TYPE_CHECKING:
 
 def named(file: CaseFile) -> Iterator[tuple[str, str]]:
     """Place in the case file, and path as it is written there, of each file it names."""
+    from anisocontact.mesh.deck import included_files  # a case is read without finite elements
+
     for place, given in _meshes(file.case):
         yield place, given
         path = file.resolve(given)
