@@ -389,7 +389,7 @@ def test_what_a_larger_part_has_shown_is_the_reason(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_few_points_inside_a_master_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One of nine slave points lies inside, which `SideOfMaster.inside` tells and nothing else does.
+    """One of nine slave points lies inside, which only `SideOfMaster.inside` tells.
 
     Requirement: the state is refused, and the line says how many points and how deep.
     """
