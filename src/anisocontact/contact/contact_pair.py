@@ -316,7 +316,10 @@ class ContactPair:
         return self.master.retraceable and not self.trials.augmented
 
     def predict(self, ratio: float) -> None:
-        """Let multipliers of the next trials start extrapolated, by a ratio of the last change."""
+        """Let multipliers of the next trials start extrapolated, by a ratio of the last change.
+
+        Where nothing is extrapolated, no node has moved in the first trial, but masters have.
+        """
         self.trials.predict(ratio * self._gained)
         if ratio == 0.0:
             self.trials.expect_motion()
