@@ -232,16 +232,16 @@ def test_restart_with_another_file_of_a_package(tmp_path, capsys, changed):
         "deep/size": "from . import ONE\n",
     }
     for name, text in files.items():
-        file = tmp_path / "parts" / f"{name}.py"
+        file = tmp_path / "sizes_of_law" / f"{name}.py"
         file.parent.mkdir(exist_ok=True, parents=True)
         file.write_text(text, encoding="utf-8")
-    path = smooth(tmp_path, ("import numpy", "from parts.deep import size\nimport numpy"))
+    path = smooth(tmp_path, ("import numpy", "from sizes_of_law.deep import size\nimport numpy"))
     out = tmp_path / "out"
     assert main(["run", str(path), "-o", str(out)]) == 0
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
-    (tmp_path / "parts" / f"{changed}.py").write_text("ONE = 2.0\n", encoding="utf-8")
+    (tmp_path / "sizes_of_law" / f"{changed}.py").write_text("ONE = 2.0\n", encoding="utf-8")
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
-    assert f"'parts/{changed}.py' has changed since the run" in capsys.readouterr().err
+    assert f"'sizes_of_law/{changed}.py' has changed since the run" in capsys.readouterr().err
 
 
 def test_a_law_that_goes_to_another_folder(tmp_path, monkeypatch):
