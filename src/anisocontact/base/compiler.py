@@ -17,9 +17,9 @@ from anisocontact.base.errors import MachineError
 
 #: Arguments for code of this machine alone whose sums may be in any order, and in which what is not
 #: a number stays none: an iterate far off is judged by that. FFCx writes straight loops: what the
-#: second level of optimisation does beyond vectors takes a third longer, to no quicker matrix. Without
-#: what GCC calls expensive nothing clears the upper halves of the vector registers before a call, and
-#: each logarithm or power of a quadrature point waits for some hundred nanoseconds.
+#: second level of optimisation does beyond vectors takes a third longer, to no quicker matrix. But
+#: without what GCC calls expensive nothing clears the upper halves of vector registers before a
+#: call, and every logarithm or power at a quadrature point waits for some hundred nanoseconds.
 FAST = (
     *("-O1", "-fexpensive-optimizations", "-ftree-vectorize", "-march=native"),
     *("-ffast-math", "-fno-finite-math-only", "-g0"),
