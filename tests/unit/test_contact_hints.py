@@ -251,6 +251,51 @@ def test_a_master_that_ends_inside_slave_facets_is_told(cells, met):
         assert not hidden_borders([Contact(model, slave, master, LAW, mortar=mortar)])
 
 
+@pytest.mark.parametrize(("layer", "told"), [(1e-3, 1), (1e3, 0)])
+def test_a_fifth_of_the_area_too_much_is_told_of_soft_layers_alone(layer, told):
+    """A block of 1.2 x 1 whose 2 x 2 points per facet meet 1.125 of its area, by hand.
+
+    Requirement: the force of a layer much softer than the bodies is off by that share, and by next
+    to nothing where the layer is much stiffer.
+    """
+    base = BoxSpec((-1, 0, -1), (3, 1, 1), (4, 1, 1))
+    model = build_box({"base": base, "block": BoxSpec((0.2, 0, 0), (1, 1, 1), (3, 3, 1))})
+    law = ContactLaw(
+        NormalLaw(penalty=layer), Adhesion(stiffness=layer), Friction(coefficients=0.3)
+    )
+    contact = Contact(model, "base.top", "block.bottom", law, mortar=False)
+    steel = make_material("linear-elastic", E=1.0, nu=0.3)
+    Problem(model, {"base": steel, "block": steel}, [contact])
+    found = overlapped(contact.master.sides, contact.master.positions)
+    np.testing.assert_allclose(found.met, 1.125, rtol=1e-12)
+    lines = hidden_borders([contact])
+    assert len(lines) == told
+    assert all("whose points meet 1" in line for line in lines)
+
+
+@pytest.mark.parametrize("said", [False, True])
+def test_a_border_that_a_slide_has_brought_inside_slave_facets_is_told_at_the_end(said):
+    """A block slid from where points meet 1.27 of its area, which stiff layers bear, to 0.56.
+
+    Requirement: the area of the end counts, not that of the start, unless it was told there.
+    """
+    base = BoxSpec((-1, -1, -1), (3, 3, 1), (4, 4, 1))
+    model = build_box({"base": base, "block": BoxSpec((0.2, 0.2, 0), (1, 1, 1), (3, 3, 1))})
+    contact = Contact(model, "base.top", "block.bottom", LAW, mortar=False)
+    told = hidden_borders([contact])
+    assert not told
+    u = np.zeros((len(contact.space.tabulate_dof_coordinates()), 3))
+    u[fem.locate_dofs_topological(contact.space, 3, model.cells("block")), :2] = -0.2
+    contact.update(u, 1.0)
+    same = ("worst_penetration", "worst_elastic_slip", "worst_turn")
+    entry = dict.fromkeys(same, 0.0) | {"slave": "base.top", "master": "block.bottom"}
+    entry |= {"facet_size": 0.75, "points": {"open": 0, "stick": 1, "slip": 0}}
+    started = ["contact of base.top with block.bottom: the master ends inside facets of the slave"]
+    none = {"external": 1.0, "stabilisation": 0.0, "flow": 0.0}
+    lines = at_end([contact], [entry], none, told=started if said else [])
+    assert ["ends inside facets" in line for line in lines] == ([] if said else [True])
+
+
 def test_a_master_in_a_symmetry_plane_is_refused_as_a_slave_is():
     """Held along its normal the plane would carry the load, and the body below feel nothing."""
     model = _model()

@@ -26,6 +26,10 @@ CLOSE = 0.1
 #: Share of the area that is met or missed wrongly which is worth a word: two blocks, one wider than
 #: the other, carry 5 % less where 27 % of it is missed, 40 % less where it is 44 %.
 WRONG = 0.25
+#: The same of what is wrong as soft layers see it: their forces are off by that share.
+WRONG_OF_SOFT = 0.1
+#: What a line says of such a contact.
+BORDERS = "the master ends inside facets of the slave"
 
 
 @dataclass(frozen=True)
@@ -46,8 +50,8 @@ class Overlap:
 def hidden_borders(contacts: Sequence[Contact]) -> list[str]:
     """Contacts at points whose slave facets the master ends in, so that areas are wrong.
 
-    Too small an area leaves forces to few points, into which the bodies sink. Too large a one is as
-    many times stiffer as a layer, which matters as far as that is softer than the bodies.
+    Too small an area leaves forces to few points, into which the bodies sink. A wrong one is as
+    many times stiffer or softer as a layer, which matters as far as that is softer than the bodies.
     Collective.
 
     Args:
@@ -64,10 +68,10 @@ def hidden_borders(contacts: Sequence[Contact]) -> list[str]:
         if not overlap.covered:
             continue
         share = overlap.met / overlap.covered
-        if max(1.0 - share, (share - 1.0) * _softness(one)) > WRONG:
+        if 1.0 - share > WRONG or abs(share - 1.0) * _softness(one) > WRONG_OF_SOFT:
             found.append(
-                f"contact of {' with '.join(one.groups)}: the master ends inside facets of the "
-                f"slave ({overlap.cut / overlap.covered:.0%} of the area on which they touch), "
+                f"contact of {' with '.join(one.groups)}: {BORDERS} "
+                f"({overlap.cut / overlap.covered:.0%} of the area on which they touch), "
                 f"whose points meet {share:.0%} of that area, and the force is wrong; swap slave "
                 'and master, take slave nodes (pass = "mortar", Contact(..., mortar=True)), or '
                 "finer facets of the slave there"

@@ -10,7 +10,7 @@ from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
 from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.contact.friction_hints import doubtful_friction
-from anisocontact.contact.hidden_borders import CLOSE, hidden_borders
+from anisocontact.contact.hidden_borders import BORDERS, hidden_borders
 from anisocontact.contact.hints import (
     MISSED,
     faceted,
@@ -166,6 +166,7 @@ def at_end(
     shown: Sequence[dict[str, Any]],
     energy: dict[str, float],
     relaxed: bool = False,
+    told: Sequence[str] = (),
 ) -> list[str]:
     """What is too soft, does not touch, is pressed aside, or was held by stabilisation.
 
@@ -174,6 +175,7 @@ def at_end(
         shown: Their entries in the summary.
         energy: Energies of the run.
         relaxed: Whether penalties held where there were no multipliers.
+        told: What was said at the start.
     """
     found = []
     for contact, entry in zip(contacts, shown, strict=True):
@@ -200,7 +202,7 @@ def at_end(
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
-        if entry["initial_gap"] > CLOSE * entry["facet_size"]:  # the others were told at the start
+        if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]
     for name, text in _TAKEN.items():

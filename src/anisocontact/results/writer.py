@@ -274,7 +274,7 @@ class Writer:
         self.summary["message"] = message
         contacts, shown = self._problem.contacts, self.summary["contacts"]
         relaxed = bool(self.summary.get("relaxed"))
-        found = at_end(contacts, shown, self.summary["energy"], relaxed)
+        found = at_end(contacts, shown, self.summary["energy"], relaxed, self._at_start)
         if status == "done":  # a run that stopped has its reason
             found += soft(contacts, shown, relaxed)
         missed = [event["text"] for event in self.summary["events"] if not event["happened"]]
