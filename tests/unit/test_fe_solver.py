@@ -58,6 +58,20 @@ def test_wrong_step_is_one_line(fe, values, line):
     assert str(caught.value) == line
 
 
+@pytest.mark.parametrize("number", [np.float32(-0.25), np.int64(-1), np.array(-0.25)])
+def test_numbers_of_numpy_are_numbers(fe, number):
+    """Requirement: a step takes them as what they are, in the precision of all others.
+
+    Arithmetic of NumPy with a number in single precision stays in single precision: a third of
+    the way would be off in the eighth digit. Exact, as -1/4 and -1 are.
+    """
+    from anisocontact.base.course import history_of
+    from anisocontact.solver import Step
+
+    given = Step("a", 1, {"block.top": {"z": number}}).displacement["block.top"]["z"]
+    assert history_of(given).at(1.0 / 3.0, 1.0, 0.0) == float(number) * (1.0 / 3.0)
+
+
 def test_unknown_group_is_found_before_anything_is_solved(block):
     """Requirement: a misspelt facet group suggests the near one, whatever the step."""
     from anisocontact.solver import Solver, Step

@@ -255,6 +255,7 @@ MISTAKES = [
     (CUBE.replace("*HEADING", "1, 2, 3"), "line 1: data in front of the first keyword"),
     (CUBE.replace("*HEADING", "*INCLUDE, INPUT=none.inp"), "does not exist"),
     (CUBE.replace("cube, S2", "cube, S7"), "face 'S7' given, S1 to S6 are read"),
+    (CUBE.replace("cube, S2", "9, S2"), "it names a face of element 9, which is not there"),
     (CUBE.replace("cube, S2", "cube, SPOS"), "face 'SPOS' given, S1 to S6 are read"),
     (CUBE.replace("5, 6, 7, 8", "5, 6, 7.5, 8"), "7.5 given, elements and nodes have whole"),
     (

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from anisocontact.base.errors import InputError
 from anisocontact.results import Results
-from anisocontact.results.files import OWN, check_folder, clear, replacing, write_text
+from anisocontact.results.files import OWN, Disk, check_folder, clear, replacing, write_text
 from anisocontact.results.history import HistoryTable, flat, read_history
 
 
@@ -163,3 +166,25 @@ def test_a_table_that_has_lost_rows_does_not_go_on(tmp_path, left, rows):
     path.write_text("".join(lines))
     HistoryTable(path).resume(table.state())
     assert path.read_text().splitlines(keepends=True) == lines
+
+
+def test_fields_of_a_time_that_a_sum_of_steps_meets_to_rounding(fe, tmp_path):
+    """Requirement: fields are written at a time in `times` that an increment ends at.
+
+    Eight steps of 0.1 end at 0.7999999999999999, which is the 0.8 of a user: by rounding alone the
+    fields of the increment after it would be taken for those of this time.
+    """
+    from anisocontact.results.fields import FieldFiles
+    from anisocontact.results.output_options import OutputOptions
+    from anisocontact.solver import Step
+
+    steps = [Step(f"s{k}", 1, duration=0.1) for k in range(9)]
+    options = OutputOptions(steps=["s0"], times=[0.8])
+    fields = FieldFiles(tmp_path, Disk(None), steps, {}, options)
+    written, ends = [], list(itertools.accumulate([0.0] + [step.duration for step in steps]))
+    fields.write = written.append
+    for k in range(9):
+        accepted = SimpleNamespace(step_index=k, increment=1, done=1.0, event="", time=ends[k + 1])
+        fields.accept(accepted, ends[k])
+    assert ends[8] != 0.8
+    assert written == [ends[1], ends[8]]

@@ -184,6 +184,10 @@ def test_principal_stresses_of_a_shear():
         ),
         ("normal = [0, 0, 2]", "", "output.resultant.waist.normal: a body needs it"),
         ("[output.probe.end]", '[output.probe."a/b"]', 'output.probe: "a/b" given, a name of'),
+        ("[output.probe.end]", f"[output.probe.{'e' * 300}]", "needed, at most 100 bytes"),
+        ("times = [0.4]", "times = [0.4, 3]", "output.times[1]: 3 given, the run ends at 2"),
+        ("count = 4", "count = 1_000_000_000", "count: 1000000000 given, must be at most 1e+06"),
+        ("to = [1.9, 1.9, 3.0]", "to = [1.1, 0.3, 0.0]", "output.probe.line.to: the same point"),
     ],
 )
 def test_mistakes_are_one_line(run, capsys, old, new, said):

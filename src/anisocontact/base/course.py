@@ -15,7 +15,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
-from anisocontact.base.typed import typed
+from anisocontact.base.typed import is_number, typed
 
 #: Difference between where something is and where its amplitude begins that is round-off, over
 #: the largest of the numbers.
@@ -259,7 +259,10 @@ def history_of(given: PrescribedValue) -> LinearHistory | Course:
         >>> history_of(2.0).end(0.0, 1.0), history_of(Course(lambda t: t)).end(0.0, 4.0)
         (2.0, 4.0)
     """
-    return given if isinstance(given, Course) else LinearHistory(given)
+    if isinstance(given, Course):
+        return given
+    # a number of NumPy would carry its own precision into all that is computed with it
+    return LinearHistory(float(given) if is_number(given) else given)
 
 
 def check_prescribed(given: Any) -> None:
@@ -276,10 +279,10 @@ def check_prescribed(given: Any) -> None:
         Traceback (most recent call last):
         anisocontact.base.errors.InputError: 'much' given, needs a finite number
     """
-    value: object = history_of(given).value
-    if not isinstance(value, int | float) or not math.isfinite(value):
+    value: Any = history_of(given).value
+    if not is_number(value) or not math.isfinite(value):
         raise InputError(f"{given!r} given, needs a finite number")
-    if given is value and out_of_range(value):
+    if not isinstance(given, Course) and out_of_range(value):
         raise InputError(f"{given!r} given, must be 0, or {RANGE}")
 
 

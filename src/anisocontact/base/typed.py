@@ -16,7 +16,7 @@ from functools import cache, partial, wraps
 from itertools import chain
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -55,6 +55,16 @@ def typed[F: Callable[..., Any]](made: F) -> F:
         own.__init__ = _checked(own.__init__)
         return made
     return cast(F, _checked(made))
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is a number, of Python or of NumPy, and no truth value and no NaN.
+
+    Example:
+        >>> is_number(np.float32(0.5)), is_number(np.int64(2)), is_number(True), is_number("2")
+        (True, True, False, False)
+    """
+    return _is_number(Real, value)
 
 
 #: Says whether a value is of a type.

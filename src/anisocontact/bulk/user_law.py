@@ -12,6 +12,7 @@ import numpy as np
 from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
+from anisocontact.base.typed import is_number
 from anisocontact.bulk.hyperelastic import UserEnergy, UserStress
 from anisocontact.bulk.materials import Material
 from anisocontact.bulk.point_law import PointLaw, PointResult, PointState
@@ -137,8 +138,7 @@ def user_material(given: Any) -> Material:
     """
     name = type(given).__name__
     young = getattr(given, "young", None)
-    number = isinstance(young, int | float) and not isinstance(young, bool)
-    if not (number and math.isfinite(cast(float, young)) and cast(float, young) > 0.0):
+    if not (is_number(young) and math.isfinite(young) and young > 0.0):
         text = f"{name}.young is {young!r}, Young's modulus at rest needed, > 0"
         raise InputError(text)
     if hasattr(given, "linear"):
@@ -150,6 +150,6 @@ def user_material(given: Any) -> Material:
     for method, kind in kinds.items():
         function = getattr(given, method, None)
         if callable(function):
-            made = kind(function, float(cast(float, young)), name=f"{name}.{method}")
+            made = kind(function, float(young), name=f"{name}.{method}")
             return cast(Material, made)
     raise InputError(f"{name} has no method energy(F), piola(F) or update(state)")

@@ -54,7 +54,8 @@ def check(case: Case) -> Iterator[InputError]:
     yield from _steps(case)
     yield from check_courses(case)
     yield from check_units(case.units)
-    yield from check_output(case.output, [step.name for step in case.step])
+    end = sum(step.duration for step in case.step)
+    yield from check_output(case.output, [step.name for step in case.step], end)
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:
         text = f"{smallest!r} given, must be at most solver.largest_increment, {largest!r}"

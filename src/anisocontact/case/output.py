@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from anisocontact.results.resultants import Resultant
 
 
+#: Bytes of a name that still is one of a file, with what is put around it.
+_LONGEST_NAME = 100
+
+
 class ProbeSection(Section):
     """Values at a point, along a line or at the nodes of a facet group, in `probes/<name>.csv`."""
 
@@ -26,7 +30,9 @@ class ProbeSection(Section):
         Point | None, number("vector", "length", "a point of a body at rest, or the first one")
     ] = None
     to: Annotated[Point | None, number("vector", "length", "the last point of a line")] = None
-    count: Annotated[int, number("integer", "1", "points of the line", "positive")] = 11
+    count: Annotated[
+        int, number("integer", "1", "points of the line", "positive", most=1_000_000)
+    ] = 11
     group: str | None = Field(None, description='facet group in the place of `point`, "body.group"')
     quantities: list[str] = Field(
         default=["displacement", "stress"], description="quantities of a node"
@@ -48,6 +54,8 @@ class ProbeSection(Section):
             yield "point", "either a point or a group is needed"
         if self.to is not None and self.point is None:
             yield "to", "given without a point"
+        if self.to is not None and self.to == self.point:
+            yield "to", "the same point as `point`, a line has two ends"
         if self.to is not None and self.count < 2:
             yield "count", f"{self.count} given, a line has at least 2"
 
@@ -156,12 +164,13 @@ class Output(Section):
         )
 
 
-def check_output(output: Output, steps: list[str]) -> Iterator[InputError]:
+def check_output(output: Output, steps: Sequence[str], end: float) -> Iterator[InputError]:
     """What is wrong in the table.
 
     Args:
         output: The table.
         steps: Names of the steps.
+        end: When the last of them ends at the latest.
     """
     if output.vtkhdf and find_spec("h5py") is None:
         yield InputError("needs h5py: pip install h5py", "output.vtkhdf")
@@ -169,13 +178,18 @@ def check_output(output: Output, steps: list[str]) -> Iterator[InputError]:
         if name not in steps:
             text = f'no step "{name}"; there are: {", ".join(steps)}'
             yield InputError(text, f"output.steps[{i}]")
+    for i, time in enumerate(output.times):
+        if time > end * (1.0 + 1e-9):
+            yield InputError(f"{time:g} given, the run ends at {end:g}", f"output.times[{i}]")
     tables: list[tuple[str, str, ProbeSection | ResultantSection]] = [
         *(("probe", name, section) for name, section in output.probe.items()),
         *(("resultant", name, section) for name, section in output.resultant.items()),
     ]
     for what, name, section in tables:
-        if not name.replace("_", "").replace("-", "").isalnum():
-            text = f'"{name}" given, a name of letters, numbers, - and _ needed'
+        plain = name.replace("_", "").replace("-", "").isalnum()
+        if not plain or len(name.encode()) > _LONGEST_NAME:
+            allowed = f"a name of letters, numbers, - and _ needed, at most {_LONGEST_NAME} bytes"
+            text = f'"{name[:40]}" given, {allowed}'
             yield InputError(text, f"output.{what}")
         for key, text in section.mistakes():
             yield InputError(text, f"output.{what}.{name}.{key}")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Pair
 from anisocontact.base.errors import InputError
-from anisocontact.base.typed import typed
+from anisocontact.base.typed import is_number, typed
 from anisocontact.surfaces import points
 
 #: det/trace^2 of a tensor below which it has rank one.
@@ -282,7 +283,7 @@ def _line_angle(angle: float) -> float:
 
 def _pair(given: Pair | float) -> Pair:
     """One number stands for both axes."""
-    return (given, given) if isinstance(given, int | float) else given
+    return (given, given) if is_number(given) else cast(Pair, given)
 
 
 def _positive(name: str, values: Pair) -> tuple[float, ...]:

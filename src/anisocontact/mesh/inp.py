@@ -101,7 +101,7 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
         mesh.node_sets[plain(name)] = places[known]
     at = dict(zip(numbers[order].tolist(), range(len(numbers)), strict=True))
     for name, faces in _once(deck, deck.surfaces):
-        mesh.surfaces[plain(name)] = _faces(deck, faces, at)
+        mesh.surfaces[plain(name)] = _faces(deck, name, faces, at)
     mesh.surfaces |= _of_faces(deck, mesh, elements_of_faces, at)
     mesh.notes = (*mesh.notes, *_odd(deck, mesh))
     mesh.left_out = deck.left_out
@@ -217,12 +217,21 @@ def plain(name: str) -> str:
     return name.replace(".", "_").lower()
 
 
-def _faces(deck: Deck, faces: Iterable[tuple[str, str]], at: Mapping[int, int]) -> list[Ints]:
-    """Corners of the faces of a surface, by the number of corners; see `WholeMesh.surfaces`."""
+def _faces(
+    deck: Deck, name: str, faces: Iterable[tuple[str, str]], at: Mapping[int, int]
+) -> list[Ints]:
+    """Corners of the faces of a surface, by the number of corners; see `WholeMesh.surfaces`.
+
+    Raises:
+        InputError: It names a face that there is not, or of an element that there is not.
+    """
     found: dict[int, list[list[int]]] = {}
     for entry, face in faces:
         for number in deck.members_of(entry):
             if number not in deck.elements:
+                if not deck.left_out:
+                    text = f"it names a face of element {number}, which is not there"
+                    raise InputError(f"surface {name!r}: {text}")
                 continue  # of an element that is no solid
             kind, nodes = deck.elements[number]
             sides = SIDES[KNOWN[kind][0]]

@@ -19,6 +19,10 @@ SUFFIXES: Mapping[str, str] = MappingProxyType(
 )
 
 
+#: Difference of times over themselves that is the round-off of a sum of steps.
+_SAME = 1e-9
+
+
 class FieldFiles:
     """Writes fields where they are due.
 
@@ -79,7 +83,8 @@ class FieldFiles:
 
     def _is_due(self, accepted: Accepted, before: float) -> bool:
         options, step = self._options, self._steps[accepted.step_index]
-        if any(before < time <= accepted.time for time in options.times):
+        begun, ended = before + _SAME * abs(before), accepted.time + _SAME * abs(accepted.time)
+        if any(begun < time <= ended for time in options.times):
             return True
         if options.steps and step.name not in options.steps:
             return False

@@ -14,7 +14,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.course import PrescribedValue, check_prescribed, history_of
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.one_history import OneHistory
-from anisocontact.base.typed import typed
+from anisocontact.base.typed import is_number, typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
 #: Translation of the reference point along, and turn about the axes of space.
@@ -141,7 +141,7 @@ class RigidBody(OneHistory):
         """
         values = self.trial.values
         for name, value in turns_in_radian(components, "").items():
-            if not isinstance(value, int | float):
+            if not is_number(value):
                 raise InputError(f"{value!r} given, needs a finite number", name)
             values[component_number(name, name)] = value
         self.place(values)
@@ -265,6 +265,6 @@ def component_number(name: str, field: str) -> int:
 
 
 def _stiffness(value: object, field: str) -> float:
-    if not (isinstance(value, int | float) and np.isfinite(value) and value >= 0.0):
+    if not (is_number(value) and np.isfinite(value) and value >= 0.0):
         raise InputError(f"{value!r} given, must be >= 0", field)
     return float(value)
