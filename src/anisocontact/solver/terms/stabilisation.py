@@ -316,17 +316,19 @@ class Stabilisation(Term):
         return lost
 
     def doubtful(self, u: Floats) -> bool:
-        """Whether a body without springs no longer sticks, or has moved by more than a facet.
+        """Whether nothing holds a body without springs, or it has moved farther than expected.
 
-        Its motions may then meet no stiffness: springs have to say where it is.
+        Its motions may then meet no stiffness: springs have to say where it is. What is expected is
+        a facet beyond all that prescribed motions can explain: a belt that is pulled over a drum
+        goes as far as its end.
 
         Args:
             u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
         """
-        explained = self._prescribed(u) if any(f.trusted and f.sprung for f in self._free) else 0.0
+        explained = self._prescribed(u) if any(f.trusted for f in self._free) else 0.0
         return any(
             [
-                not free.holds() or self._far(free, u, explained if free.sprung else 0.0)
+                not free.holds() or self._far(free, u, explained)
                 for free in self._free
                 if free.trusted
             ]
