@@ -120,17 +120,19 @@ def test_mistakes_in_the_table(tmp_path, capsys, laws, key, said):
 
 
 @pytest.mark.parametrize(
-    ("laws", "field"),
+    ("laws", "field", "said"),
     [
-        ("", "friction"),
-        (CORE + PYTHON, "adhesion"),
-        ('evolution = "total"\n' + PYTHON, "evolution"),
+        ("", "friction", "{ coefficients = 0 } without friction"),
+        (CORE + PYTHON, "adhesion", "the whole tangential law"),
+        ('evolution = "total"\n' + PYTHON, "evolution", ""),
     ],
 )
-def test_one_tangential_law(tmp_path, capsys, laws, field):
-    """Laws of the core or one in Python, not both and not none."""
+def test_one_tangential_law(tmp_path, capsys, laws, field, said):
+    """Laws of the core or one in Python, not both and not none; a line says what to write."""
     assert main(["check", str(case(tmp_path, laws))]) == 2
-    assert capsys.readouterr().err.startswith(f"error: contact[0].{field}: ")
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: contact[0].{field}: ")
+    assert said in error
 
 
 FAULTY = [

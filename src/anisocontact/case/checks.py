@@ -219,7 +219,10 @@ def _laws(
     """Laws of the core or one in Python, the latter as far as they are known without its file."""
     twice = [key for key in ("adhesion", "friction") if key in contact.model_fields_set]
     if contact.python is None and contact.friction is None:
-        text = "missing; yield ellipse and sliding rule (or python, a law of your own)"
+        text = (
+            "missing; yield ellipse and sliding rule, { coefficients = 0 } without friction "
+            "(or python, a law of your own)"
+        )
         yield InputError(text, field=f"{place}.friction")
     elif contact.python is not None and twice:
         text = "given with python, which is the whole tangential law"
