@@ -124,6 +124,26 @@ def test_one_surface_under_two_names(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_parts_that_are_swapped(tmp_path, capsys):
+    """A part of the master that meets a part of the slave once more, as a slave, acts twice.
+
+    Multipliers of both sides share the pressure at random: of blocks of one material, pressed
+    straight down, contacts had tangential forces of 6 and 11 % of their normal ones.
+    """
+    start, end = CASE.index("[[contact]]"), CASE.index("[[step]]")
+    again = CASE[start:end].replace('slave = "block.bottom"\nmaster = "base.top"',
+                                    'slave = "base.part"\nmaster = "block.bottom"')  # fmt: skip
+    part = '[group."base.part"]\nby = "box"\nlow = [-0.6, -1, -0.1]\nhigh = [0.9, 2, 0.1]\n'
+    (tmp_path / "case.toml").write_text(CASE[:end] + again + part + CASE[end:])
+    assert main(["check", str(tmp_path / "case.toml")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        "error: contact: contact 'base.part on block.bottom' is given twice: 6 of its facets are "
+        "the master of what its master is the slave in, contact 'block.bottom on base.top'; take "
+        "one side as the slave"
+    )
+
+
 def test_what_is_built(tmp_path, capsys):
     """Points and slave nodes, the area of now at finite strain, the softer penalty."""
     contact = _built(tmp_path, CASE).problem.contacts[0]

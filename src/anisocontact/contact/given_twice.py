@@ -17,7 +17,7 @@ SAME = 1e-12
 
 
 def check_given_once(contacts: Sequence[Contact], field: str) -> None:
-    """Refuse facets that meet one master in two contacts; collective.
+    """Refuse facets that meet each other in two contacts, whichever is the slave; collective.
 
     Args:
         contacts: The contacts of a problem.
@@ -27,13 +27,15 @@ def check_given_once(contacts: Sequence[Contact], field: str) -> None:
         InputError: Names the contacts and how many facets they share.
     """
     for first, second in combinations(contacts, 2):
-        count = shared(first, second)
-        if count:
-            raise InputError(
-                f"contact {second.name!r} is given twice: {count} of its facets meet the same "
-                f"master in contact {first.name!r}",
-                field,
+        count, swapped = shared(first, second), swapped_facets(first, second)
+        if count or swapped:
+            what = (
+                f"{count} of its facets meet the same master in contact {first.name!r}"
+                if count
+                else f"{swapped} of its facets are the master of what its master is the slave in, "
+                f"contact {first.name!r}; take one side as the slave"
             )
+            raise InputError(f"contact {second.name!r} is given twice: {what}", field)
 
 
 def shared(one: Contact, two: Contact) -> int:
@@ -47,6 +49,18 @@ def shared(one: Contact, two: Contact) -> int:
     pairs = zip(one.groups, two.groups, strict=True)
     count = min([_common(one, two, *pair) for pair in pairs])
     return count if count and (one.meshed or _same_surface(one, two)) else 0
+
+
+def swapped_facets(one: Contact, two: Contact) -> int:
+    """Facets, over all ranks, of the slave of `two` that meet, as a master, its own; collective.
+
+    Both contacts would press them apart: pressures are shared at random, and friction pulls.
+    """
+    if not (one.of_two_groups and two.of_two_groups):
+        return 0
+    pairs = zip(one.groups, reversed(two.groups), strict=True)
+    masters, slaves = [_common(one, two, *pair) for pair in pairs]
+    return slaves if masters else 0
 
 
 def _common(one: Contact, two: Contact, group: str, other: str) -> int:
