@@ -5,9 +5,9 @@ thickness t outside of the radius R on which friction acts, T2 / T1 = exp(m pi R
 
 Requirement: 1.5 % of it, no cut, at most 170 corrections in all. The belt is free along x alone,
 where pressures around the drum hold it; that its pulled end goes by more than a facet is no reason
-to doubt that they do. Tolerance: measured 1.1 %, as the arcs over the facets are a twelfth of the
-thickness high, and 0.2 % with facets of half the length; 139 corrections. Where equilibria in which
-the belt has moved by more than a facet are refused there is a cut.
+to doubt that they do. Tolerance: measured 0.7 %, as the arcs over the facets are a twelfth of the
+thickness high, and 0.2 % with facets of half the length; 131 corrections, 330 and a cut where
+equilibria in which the belt has moved by more than a facet are refused.
 """
 
 from __future__ import annotations
@@ -59,18 +59,18 @@ master = "drum"
 friction = {{ coefficients = {FRICTION} }}
 [[step]]
 name = "tighten"
-increments = 2
+increments = 1
 displacement = {{ "belt.start" = {{ y = 0 }} }}
 traction = {{ "tail.bottom" = {{ y = {-LOAD} }} }}
 [[step]]
 name = "pull"
-increments = 2
-displacement = {{ "belt.start" = {{ y = -0.6 }} }}
+increments = 1
+displacement = {{ "belt.start" = {{ y = -0.3 }} }}
 """
 
 
 def test_pulled_belt(to_the_end: Callable[..., Any]) -> None:
-    """Pull over load once all slides."""
+    """Pull over load at the end of the increment in which all of it begins to slide."""
     run = to_the_end(CASE)
     names = [contact.name for contact in run.problem.contacts]
     pulls = [
@@ -80,4 +80,4 @@ def test_pulled_belt(to_the_end: Callable[..., Any]) -> None:
     expected = np.exp(FRICTION * np.pi * RADIUS / (RADIUS + 0.5 * THICK))
     assert not run.cuts
     assert sum(part.iterations for part in run.accepted) <= 170
-    np.testing.assert_allclose(pulls[-2:], expected, rtol=1.5e-2)
+    np.testing.assert_allclose(pulls[-1], expected, rtol=1.5e-2)
