@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.statuses import STICK
+from anisocontact.contact.active_set import Active
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Linear, Master
@@ -55,11 +56,13 @@ class Linearised:
         linear: How tractions change with the nodes.
         base: Tractions there, and what the multipliers have yet to take.
         slip: Slip by which the multipliers violate friction, see `Semismooth.stiff`.
+        active: Which points are closed there.
     """
 
     linear: Linear
     base: Base
     slip: Floats
+    active: Active
 
     @classmethod
     def of(
@@ -70,6 +73,7 @@ class Linearised:
         trial: Answer,
         dt: float,
         physical: float,
+        active: Active,
     ) -> tuple[Answer, Linearised]:
         """A trial with the derivative of a Newton step, and what that is linear about.
 
@@ -80,6 +84,7 @@ class Linearised:
             trial: What laws answered, without derivative.
             dt: Time increment.
             physical: Stiffness of an adhesion that is no penalty, stress/length.
+            active: Which points are closed.
         """
         state, slip = follows.stiff(step)
         stiff = master.answer(state, dt, derivative=True, separate=True)
@@ -92,4 +97,4 @@ class Linearised:
         if follows.tangential:
             traction = traction + step.supported
         base = Base(follows.vector(step), traction, linear.slipped(slip), step.left)
-        return answer, cls(linear, base, slip)
+        return answer, cls(linear, base, slip, active)

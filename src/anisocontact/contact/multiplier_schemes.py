@@ -14,15 +14,15 @@ from anisocontact.contact.multipliers import (
     simultaneous,
 )
 from anisocontact.contact.nested_uzawa import Graded, NestedUzawa
-from anisocontact.contact.semismooth import Semismooth, Slender, Softer
+from anisocontact.contact.semismooth import Semismooth, Singly, Slender, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Schemes of an increment, the usual one and what is tried where that fails: with smaller
-#: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, and
-#: with penalties alone where multipliers are not required.
+#: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, with
+#: points that close one at a time, and with penalties alone where multipliers are not required.
 USUAL, SOFTER, IN_CYCLES, GRADED = "usual", "softer", "in cycles", "graded"
-SLENDER = "slender"
+SLENDER, SINGLY = "slender", "singly"
 PENALTIES = "penalties"
 
 #: Their classes, by `Augmentation.multipliers`.
@@ -31,6 +31,7 @@ SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
         USUAL: Semismooth,
         SOFTER: Softer,
         SLENDER: Slender,
+        SINGLY: Singly,
         IN_CYCLES: NestedUzawa,
         GRADED: Graded,
     },

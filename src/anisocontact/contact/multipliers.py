@@ -122,19 +122,22 @@ class Multipliers:
         level: What the penalties are multiplied with at the beginning of an increment; part of the
             history.
         factor: What they are multiplied with now.
+        size: Facet size, length.
         limit: Violation that is none, length.
         tangential: Whether there are multipliers of the tangential part.
         exact: Whether no compliance is meant to stay, but where there is no other way.
+        closes_singly: Whether points close one at a time where they open and close in turn.
     """
 
     exact: ClassVar[bool] = True
+    closes_singly: ClassVar[bool] = False
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
     ) -> None:
         self.tangential = augmentation.tangential
         self.level = self.factor = self._proportion = 1.0
-        self.limit = augmentation.tolerance * size
+        self.size, self.limit = size, augmentation.tolerance * size
         self._penalties = penalties
         self._comm = comm
 

@@ -266,3 +266,9 @@ class Slender(Softer):
     """
 
     SHARES: ClassVar[tuple[float, float]] = (3e-4, 3e-4)
+
+
+class Singly(Semismooth):
+    """The same; where corrections gain nothing they close one point at a time, see `ActiveSet`."""
+
+    closes_singly: ClassVar[bool] = True

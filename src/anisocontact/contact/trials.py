@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.contact.active_set import Active, ActiveSet
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
@@ -66,6 +67,7 @@ class Trials:
         self._supports = SupportedPoints(len(state))
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
+        self._active = ActiveSet(comm)
         self._fresh = False
         self._state: State
         self._accepted: Snapshot
@@ -95,6 +97,7 @@ class Trials:
             accepted: The points in it.
         """
         self.start, self._linear, self._fresh = state, None, False
+        self._active = ActiveSet(self._comm)
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
@@ -195,10 +198,13 @@ class Trials:
         trial = master.answer(self.start, dt, tangent=False, separate=True)
         if self._follow(trial.snapshot):
             trial = master.answer(self.start, dt, tangent=False, separate=True)
+        if self._restrained(trial.snapshot):
+            trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
         physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
-        answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical)
+        active = Active.of(step.answer, self._active.kept)
+        answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical, active)
         return answer
 
     def _follow(self, trial: Snapshot) -> bool:
@@ -210,6 +216,22 @@ class Trials:
         start = followed(self.start, self._own, gap, before, self._comm)
         self.start = self.start if start is None else start
         return start is not None
+
+    def _restrained(self, trial: Snapshot) -> bool:
+        """Let points change as they may, see `ActiveSet`; whether trials start anew from there."""
+        if self._linear is None or self._own is None or self._layer is not None:
+            return False
+        fixed, before = self.immovable | self._slight, self._linear.active
+        gap, pressure = trial.response.gap, trial.response.pressure
+        start = self._active.restrained(self.start, gap, pressure, before, fixed, self._own)
+        self.start = self.start if start is None else start
+        return start is not None
+
+    def close_singly(self) -> bool:
+        """Let corrections close one point at a time; whether that is something else, collective."""
+        own, before = self._own, self._active.singly
+        self._active.singly |= own is not None and own.closes_singly and self._layer is None
+        return self._active.singly is not before
 
     def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""

@@ -11,6 +11,7 @@ from anisocontact.contact.multiplier_schemes import (
     GRADED,
     IN_CYCLES,
     PENALTIES,
+    SINGLY,
     SLENDER,
     SOFTER,
     USUAL,
@@ -220,6 +221,8 @@ class Attempts:
             schemes = [USUAL, SOFTER]
             if cycles and not self._problem.linear:
                 schemes.append(SLENDER)
+            if led == SINGLY:
+                schemes.append(SINGLY)
             ways = _following(searching, full, cycles, trusts, sorted(schemes, key=led.__ne__))
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
@@ -321,9 +324,9 @@ def _following(
     """Ways where multipliers follow every correction, each from the accepted history.
 
     Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller
-    penalties, at finite strain with those of slender bodies, then cycles, where there are any, that
-    begin with soft penalties and with penalties that suit the bodies, then shares of corrections
-    with smaller penalties.
+    penalties, at finite strain with those of slender bodies, then, where there are cycles, such
+    that begin with soft penalties, corrections that close one point at a time, and cycles with
+    penalties that suit the bodies, then shares of corrections with smaller penalties.
 
     Args:
         first: From the extrapolated state.
@@ -336,7 +339,8 @@ def _following(
     usual = replace(first, spare=cycles)
     begun = [replace(usual, multipliers=one) for one in schemes]
     if cycles:
-        begun.append(replace(usual, multipliers=GRADED))
+        late = (one for one in (GRADED, SINGLY) if one not in schemes)
+        begun += [replace(usual, multipliers=one) for one in late]
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
     ways = [again] if trusts or cycles else []
     if trusts and cycles:

@@ -41,11 +41,14 @@ class ResidualHistory:
         self._patience = patience
         self.residuals: list[float] = []
         self._contacts = contacts
+        self._begin = 0
         self._touching: list[int] = []
         self._sticking: list[int] = []
 
     def divergence(self, searching: bool, damped: bool) -> PETSc.SNES.ConvergedReason | None:
         """Why no equilibrium can be expected any more; None where it can. Asked at each residual.
+
+        Where corrections have gained too little they close one point at a time, and begin to count.
 
         Args:
             searching: Whether there is a line search.
@@ -57,22 +60,31 @@ class ResidualHistory:
         if self.residuals[-1] > DIVERGED * min(self.residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
         if self._idles():
+            if self._few_touch() and self._contacts.close_singly():
+                self._begin = len(self.residuals) - 1
+                return None
             return reasons.DIVERGED_LOCAL_MIN
         if not (searching or damped) and self._cycles():
             return reasons.DIVERGED_MAX_IT
-        if len(self.residuals) > self._patience and not (self._falls() or self._moves_on()):
+        spent = len(self.residuals) - self._begin
+        if spent > self._patience and not (self._falls() or self._moves_on()):
             return reasons.DIVERGED_MAX_IT
         return reasons.DIVERGED_LINE_SEARCH if searching and self._stuck() else None
+
+    def _few_touch(self) -> bool:
+        """Whether some points touched all the time, no more than corrections are waited for."""
+        lately = self._touching[-IDLE_OVER:]
+        return min(lately) > 0 and max(lately) <= self._patience
 
     def _idles(self) -> bool:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
         if not self._contacts.simultaneous:
             return False
-        known, touching = self.residuals, self._touching
+        known, touching = self.residuals[self._begin :], self._touching[self._begin :]
         if len(known) < IDLE_OVER + 3:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
-        searches = lately == 0 or lately > before or self._slips_on()
+        searches = lately > before or self._slips_on() or (lately == 0 and not self._begin)
         if searches or self._falls() or self._recedes():
             return False
         return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
