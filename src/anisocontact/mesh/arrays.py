@@ -14,6 +14,9 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.split import Route, Split, share_of
 
+#: What a group with facets inside a mesh is told.
+ON_THE_BOUNDARY = "a group must lie on the boundary of a body (bodies in contact share no nodes)"
+
 # Vertices of the facets of a cell, in DOLFINx (tensor) order.
 CELL_FACETS: dict[str, Ints] = {
     "tetrahedron": np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]),
@@ -167,7 +170,7 @@ def check_boundary(mesh: MeshArrays, name: str, counts: Ints) -> None:
     if inner:
         raise InputError(
             f"facet group {name!r}: {inner} of {total} facets lie inside the mesh; "
-            "a group must lie on the boundary of a body (bodies in contact share no nodes)"
+            f"{ON_THE_BOUNDARY}"
         )
 
 

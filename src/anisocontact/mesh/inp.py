@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,11 +17,9 @@ from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, SolidSection
 from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import support_lines
-from anisocontact.mesh.tetrahedra import EDGES, FACES
+from anisocontact.mesh.inside import SIDES
+from anisocontact.mesh.tetrahedra import FACES
 from anisocontact.mesh.whole import WholeMesh
-
-#: Faces of cells by their corners; of those in the plane their edges.
-SIDES = FACES | {cell: tuple(EDGES[cell]) for cell in ("triangle", "quadrilateral")}
 
 
 def read_inp(path: Path) -> WholeMesh:
@@ -101,7 +100,8 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
         mesh.node_sets[plain(name)] = places[known]
     at = dict(zip(numbers[order].tolist(), range(len(numbers)), strict=True))
     for name, faces in _once(deck, deck.surfaces):
-        mesh.surfaces[plain(name)] = _faces(deck, name, faces, at)
+        found = _faces(deck, name, faces, at)
+        mesh.surfaces[plain(name)], mesh.named[plain(name)] = found
     mesh.surfaces |= _of_faces(deck, mesh, elements_of_faces, at)
     mesh.notes = (*mesh.notes, *_odd(deck, mesh))
     mesh.left_out = deck.left_out
@@ -219,13 +219,15 @@ def plain(name: str) -> str:
 
 def _faces(
     deck: Deck, name: str, faces: Iterable[tuple[str, str]], at: Mapping[int, int]
-) -> list[Ints]:
-    """Corners of the faces of a surface, by the number of corners; see `WholeMesh.surfaces`.
+) -> tuple[list[Ints], list[Ints]]:
+    """Faces of a surface by the number of corners: `WholeMesh.surfaces` and `WholeMesh.named`.
 
     Raises:
         InputError: It names a face that there is not, or of an element that there is not.
     """
     found: dict[int, list[list[int]]] = {}
+    named: dict[int, list[tuple[int, int]]] = {}
+    starts = np.array([0, *sorted(deck.offsets.values())])
     for entry, face in faces:
         for number in deck.members_of(entry):
             if number not in deck.elements:
@@ -238,7 +240,13 @@ def _faces(
             known = ["", *(f"S{k + 1}" for k in range(len(sides)))]
             if face not in known:
                 raise InputError(f"surface: face {face!r} given, S1 to S{len(sides)} are read")
-            chosen = [sides[int(face[1:]) - 1]] if face else sides
-            for side in chosen:
+            place = known.index(face)
+            written = number - int(starts[np.searchsorted(starts, number) - 1])
+            for side in [sides[place - 1]] if place else sides:
                 found.setdefault(len(side), []).append([at[nodes[k]] for k in side])
-    return [np.array(rows, dtype=np.int64) for rows in found.values()]
+                named.setdefault(len(side), []).append((written, place))
+    return _arrays(found.values()), _arrays(named.values())
+
+
+def _arrays(parts: Iterable[list[Any]]) -> list[Ints]:
+    return [np.array(rows, dtype=np.int64) for rows in parts]

@@ -16,6 +16,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, check_has_cells
+from anisocontact.mesh.inside import told_inside
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
@@ -46,6 +47,8 @@ class WholeMesh:
         bodies: Body of each element, in the order of `cells`; empty where it is in none.
         node_sets: Name -> nodes.
         surfaces: Name -> corners of facets, an array for each number of corners.
+        named: Name of a surface -> element and face by which a file calls each of its facets, an
+            array (facets, 2) for each in `surfaces`; face 0 where it means all that are free.
         left_out: Elements that are no solids -> how many there are.
         notes: What was made of the mesh, a line each.
 
@@ -61,6 +64,7 @@ class WholeMesh:
     bodies: list[Sequence[str]] = field(default_factory=list)
     node_sets: dict[str, Ints] = field(default_factory=dict)
     surfaces: dict[str, list[Ints]] = field(default_factory=dict)
+    named: dict[str, list[Ints]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -82,7 +86,8 @@ class WholeMesh:
 
         Raises:
             InputError: A body is unknown, a node is missing or nowhere, cells are of several
-                orders, flat or inverted, or a facet of a surface belongs to no cell.
+                orders, flat or inverted, or a facet of a surface belongs to no cell or, while
+                others do not, lies inside the mesh.
         """
         known = list(dict.fromkeys(name for labels in self.bodies for name in labels if name))
         for name in bodies or ():
@@ -105,6 +110,8 @@ class WholeMesh:
         if not joined:
             raise InputError("no element is in a body")
         _check_nodes(joined, self.points)
+        told = self._told_inside(joined)
+        self.notes = (*self.notes, *told.values())
         wrong = 0
         for kind, (given, labels) in joined.items():
             nodes, count = turned(kind[0], given, self.points, FACES)
@@ -112,16 +119,27 @@ class WholeMesh:
         if wrong:
             self.notes = (*self.notes, f"{wrong} cells are numbered the other way round, turned")
         cells = {cell for cell, _ in joined}
+        free = {name: parts for name, parts in self.surfaces.items() if name not in told}
+        left = replace(self, surfaces=free)
         if cells <= set(COUNT) and (len(cells) > 1 or cells & {"prism", "pyramid"}):
-            return self._cut(joined)._arrays(wanted)
+            return left._cut(joined)._arrays(wanted)
         if cells == {"triangle", "quadrilateral"}:
-            return in_triangles(self, joined).arrays(wanted)
+            return in_triangles(left, joined).arrays(wanted)
         self._check_apart(joined)
         _check_degenerate(joined)
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
         return replace(mesh, notes=self.notes)
 
-    def _by_kind(self, wanted: Sequence[str]) -> dict[tuple[str, int], tuple[Ints, list[str]]]:
+    def _told_inside(self, kinds: Mapping[Kind, Elements]) -> dict[str, str]:
+        """Surfaces inside the mesh and what to say of them, before cells are cut."""
+        cells = [(cell, nodes) for (cell, _), (nodes, _) in kinds.items()]
+        told = {
+            name: told_inside(name, parts, self.named.get(name), cells)
+            for name, parts in self.surfaces.items()
+        }
+        return {name: line for name, line in told.items() if line}
+
+    def _by_kind(self, wanted: Sequence[str]) -> dict[Kind, Elements]:
         """Nodes and bodies of the elements of some bodies, by cell and number of nodes."""
         kinds: dict[tuple[str, int], list[tuple[Ints, list[str]]]] = {}
         for (cell, nodes), labels in zip(self.cells, self.bodies, strict=True):
@@ -134,7 +152,7 @@ class WholeMesh:
             for kind, parts in kinds.items()
         }
 
-    def _cut(self, kinds: Mapping[tuple[str, int], tuple[Ints, list[str]]]) -> WholeMesh:
+    def _cut(self, kinds: Mapping[Kind, Elements]) -> WholeMesh:
         """The same bodies in tetrahedra, where not all cells are of one kind that a mesh can have.
 
         Raises:
@@ -163,7 +181,7 @@ class WholeMesh:
         return cut
 
     @staticmethod
-    def _check_apart(kinds: Mapping[tuple[str, int], tuple[Ints, list[str]]]) -> None:
+    def _check_apart(kinds: Mapping[Kind, Elements]) -> None:
         """Refuse kinds of elements that share nodes: no mesh has cells of both."""
         said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
         nodes = np.concatenate([np.unique(rows) for rows, _ in kinds.values()])
@@ -227,12 +245,15 @@ def _check_nodes(kinds: Mapping[Kind, Elements], points: Floats) -> None:
 
 
 def _check_degenerate(kinds: Mapping[Kind, Elements]) -> None:
-    """Refuse cells that name a node twice."""
+    """Refuse cells that name a node twice, and two of the same nodes."""
     for (cell, _), (nodes, _) in kinds.items():
         twice = int((np.diff(np.sort(nodes, axis=1), axis=1) == 0).any(axis=1).sum())
         if twice:
             text = f"{twice} of {len(nodes)} {cell}s name a node twice"
             raise InputError(f"{text}; degenerate cells have to be wedges, pyramids, tetrahedra")
+        again = len(nodes) - len(np.unique(np.sort(nodes, axis=1), axis=0))
+        if again:
+            raise InputError(f"{again} of {len(nodes)} {cell}s have the nodes of another one")
 
 
 def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
@@ -343,10 +364,10 @@ class _Groups:
         self.facets: dict[str, Ints] = {}
 
     def add_surface(self, name: str, corners: Ints) -> None:
-        """Add a surface by the corners of its facets, -1 for those of bodies that are not taken.
+        """Add the free facets of a surface by their corners, -1 for those of bodies not taken.
 
         Raises:
-            InputError: Some lie inside the mesh, or are facets of no cell.
+            InputError: Some are facets of no cell.
         """
         rows = np.sort(corners[(corners >= 0).all(axis=1)], axis=1).tolist()
         places = [self._known.get(tuple(row), -1) for row in rows]
