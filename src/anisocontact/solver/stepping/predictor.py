@@ -9,7 +9,9 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.rigid import RigidBody
 from anisocontact.solver.stepping.increment_control import IncrementControl
+from anisocontact.solver.stepping.rigid_extrapolation import turned_on
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.solver.terms.persistent import Persistent
 
 #: Way of a free body over what it touches in a part, over the length that it touches along the way,
@@ -34,6 +36,7 @@ class Predictor:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self.travels = problem, False
+        self._bodies = bodies(problem.model)
         #: The equilibrium further on, and how far on it is, share of an increment.
         self._ahead: Vec | None = None
         self._left = 0.0
@@ -90,6 +93,7 @@ class Predictor:
             return last, ratio
         first = (1.0 + ratio) * last - ratio * before
         if not self.travels:
+            self._turn_on(first, last, before, ratio)
             return first, ratio
         owned = self._problem.layout.owned
         first.array[:owned] = last.array_r[:owned]
@@ -114,6 +118,18 @@ class Predictor:
         if states and "ahead" in kept.nodal:
             ahead = self._problem.layout.joined(kept.nodal["ahead"], kept.common["ahead"])
             self.refuse(ahead, float(left))
+
+    def _turn_on(self, first: Vec, last: Vec, before: Vec, ratio: float) -> None:
+        """Let deformable bodies that turn go on about their axes, see `turned_on`; collective."""
+        layout, at_rest = self._problem.layout, self._problem.model.positions
+        (now, _), (then, _) = layout.split(last), layout.split(before)
+        to = first.array[: layout.owned].reshape(-1, 3)
+        for body in self._bodies:
+            own = body.nodes
+            x = at_rest[own]
+            found = turned_on(x + then[own], x + now[own], ratio, layout.total)
+            if found is not None:
+                to[own] = found - x
 
     def _way(self, body: RigidBody, contact: Contact) -> float:
         """Way of a body along what it touches in the last part, over the length that it touches."""
