@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from anisocontact.solver.stepping.rigid_extrapolation import TURNS, rigid_way, turned_on
 
 POINTS = np.random.default_rng(5).uniform(-1.0, 1.0, (20, 3)) * [1.0, 2.0, 0.5] + [3.0, 0.0, 1.0]
+EVERY = np.ones(3, dtype=np.bool_)
 
 
 def _alone(values: Any) -> Any:
@@ -36,7 +37,7 @@ def test_a_rigid_motion_goes_on_as_itself(ratio: float, flat: bool) -> None:
     points = POINTS * [1.0, 1.0, 0.0] if flat else POINTS
     _, once = _screw(1.0)
     _, more = _screw(ratio)
-    found = turned_on(points, once(points), ratio, _alone)
+    found = turned_on(points, once(points), ratio, _alone, EVERY)
     np.testing.assert_allclose(found, more(once(points)), atol=1e-12)
 
 
@@ -51,7 +52,7 @@ def test_what_is_no_rigid_motion_turns_with_the_body() -> None:
     principal = np.linalg.svd(centred, full_matrices=False)[2]
     added = centred @ (principal.T * [0.02, -0.01, 0.03]) @ principal
     after = once(POINTS + added)
-    found = turned_on(POINTS, after, 1.0, _alone)
+    found = turned_on(POINTS, after, 1.0, _alone, EVERY)
     np.testing.assert_allclose(found, once(after) + added @ (turn @ turn).T, atol=1e-12)
 
 
@@ -68,6 +69,15 @@ def test_what_hardly_turns_goes_on_along_its_chord(after: np.ndarray) -> None:
     assert rigid_way(POINTS, after, _alone) is None
     line = POINTS * [1.0, 0.0, 0.0]
     assert rigid_way(line, line @ Rotation.from_rotvec([0, 0, 0.5]).as_matrix().T, _alone) is None
+
+
+def test_a_section_of_a_body_of_revolution_turns_about_its_axis_alone() -> None:
+    """A turn of the section strains circles, and is not taken for a rigid motion; a twist is."""
+    twist = POINTS @ Rotation.from_rotvec([0.0, 0.3, 0.0]).as_matrix().T
+    tilt = POINTS @ Rotation.from_rotvec([0.0, 0.0, 0.3]).as_matrix().T
+    about_y = np.array([False, True, False])
+    assert turned_on(POINTS, twist, 1.0, _alone, about_y) is not None
+    assert turned_on(POINTS, tilt, 1.0, _alone, about_y) is None
 
 
 def test_a_body_that_a_tool_turns_is_found_where_it_is(fe: Any) -> None:

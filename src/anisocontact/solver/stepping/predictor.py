@@ -37,6 +37,9 @@ class Predictor:
     def __init__(self, problem: Problem) -> None:
         self._problem, self.travels = problem, False
         self._bodies = bodies(problem.model)
+        #: Whether a turn about each axis is a rigid motion.
+        motions = problem.model.idealisation.motions
+        self._rigid = np.array([turn in motions for turn in ("rx", "ry", "rz")])
         #: The equilibrium further on, and how far on it is, share of an increment.
         self._ahead: Vec | None = None
         self._left = 0.0
@@ -127,7 +130,7 @@ class Predictor:
         for body in self._bodies:
             own = body.nodes
             x = at_rest[own]
-            found = turned_on(x + then[own], x + now[own], ratio, layout.total)
+            found = turned_on(x + then[own], x + now[own], ratio, layout.total, self._rigid)
             if found is not None:
                 to[own] = found - x
 

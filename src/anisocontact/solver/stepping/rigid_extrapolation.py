@@ -13,12 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Flags, Floats
 
 #: Angle, radian, below which a chord serves: it strains a body by 4e-4.
 TURNS = 0.02
 #: Extent of a body across its length, over that, from which on it tells how it has turned.
 _WIDE = 1e-3
+#: Largest component of an axis across those about which bodies may turn.
+_ALONG = 1e-6
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def rigid_way(before: Floats, after: Floats, total: Callable[[Any], Any]) -> Rig
 
 
 def turned_on(
-    before: Floats, after: Floats, ratio: float, total: Callable[[Any], Any]
+    before: Floats, after: Floats, ratio: float, total: Callable[[Any], Any], about: Flags
 ) -> Floats | None:
     """Where points come to if they move on as they did; collective.
 
@@ -99,12 +101,14 @@ def turned_on(
         after: Where they are, (n, 3), length.
         ratio: Size of the next part over that of the last one.
         total: Sum over all ranks.
+        about: Whether a turn about each axis is a rigid motion: that of a section of a body of
+            revolution is none, (3,).
 
     Returns:
-        (n, 3), length; None where they hardly turn, see `rigid_way`.
+        (n, 3), length; None where they hardly turn, see `rigid_way`, or not as a rigid body.
     """
     way = rigid_way(before, after, total)
-    if way is None:
+    if way is None or np.abs(way.axis[~about]).max(initial=0.0) > _ALONG:
         return None
     strained = after - way.moved(before, 1.0)
     return way.moved(after, ratio) + ratio * way.turned(strained, ratio)
