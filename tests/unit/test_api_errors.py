@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from mpi4py import MPI
 
-from anisocontact.base.errors import InputError
+import anisocontact
+from anisocontact.base.errors import InputError, RunWarning
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import UserEnergy, make_material
 from anisocontact.contact import Contact
@@ -97,6 +100,14 @@ WRONG = {
     "words for points": (
         lambda m: INTERFACE.update(START, [["a", 0, 0]]),
         "x: .* given, an array of numbers needed",
+    ),
+    "points of which some are masked": (
+        lambda m: INTERFACE.update(START, np.ma.array([[0, 0, -1.0]], mask=[[0, 0, 1]])),
+        "x: an array with masked entries given, an array of numbers needed",
+    ),
+    "starting points of which some are masked": (
+        lambda m: INTERFACE.initial_state(np.ma.array([[0, 0, -1.0]], mask=[[0, 0, 1]])),
+        "an array with masked entries given, an array of",
     ),
     "pull on a point": (
         lambda m: PrescribedPath(KNOTS, pressure=-1.0),
@@ -249,6 +260,11 @@ WRONG = {
         lambda m: Solver(held(m), [Step("a", 1, HELD)]).restore({}),
         "kept: {} given, Persistent needed",
     ),
+    "nothing to solve": (lambda m: Solver(held(m), []), "steps: no step given, one or more needed"),
+    "a number for what is called": (
+        lambda m: Solver(held(m), [Step("a", 1, HELD)]).run(on_iteration=3),
+        "on_iteration: 3 given, a function needed",
+    ),
     "no number for a motion": (
         lambda m: RigidBody("die", reference=(0, 0, 0)).move(x=float("nan")),
         "x: nan given, needs a finite number",
@@ -262,3 +278,24 @@ def test_wrong_argument(model, call):
     with pytest.raises(InputError, match=says) as caught:
         wrong(model)
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_done_is_said(model):
+    """Requirement: a run that has nothing left to solve is no silence."""
+    solver = Solver(held(model), [Step("a", 1, HELD)])
+    assert len(list(solver.run())) == 1
+    with pytest.warns(RunWarning, match="all steps are done: nothing is left to solve"):
+        assert not list(solver.run())
+
+
+def test_what_holds_arrays_is_compared_as_an_object():
+    """Requirement: `==` of what scripts are given is an answer, where NumPy has none for arrays."""
+    response = INTERFACE.update(START, [[0, 0, -1.0]])
+    assert response != INTERFACE.update(START, [[0, 0, -1.0]])
+    arrays = {"Floats", "Ints", "Flags", "Codes", "State"}
+    for name in anisocontact.__all__:
+        made = getattr(anisocontact, name)
+        if is_dataclass(made) and any(
+            arrays & set(re.findall(r"\w+", f.type)) for f in fields(made)
+        ):
+            assert made.__eq__ is object.__eq__, name

@@ -63,7 +63,8 @@ def _given(x: object, name: str) -> Floats:
     """What was given as numbers."""
     a = real(x)
     if a is None:
-        text = " ".join(f"{x!r:.60}".split())
+        text = "an array with masked entries" if np.ma.is_masked(x) else f"{x!r:.60}"
+        text = " ".join(text.split())
         raise InputError(f"{text} given, an array of real numbers needed", field=name)
     return a
 
@@ -112,6 +113,8 @@ def real(x: object) -> Floats | None:
         >>> real([1, True]), real([None]), real("2")
         (array([1., 1.]), None, None)
     """
+    if np.ma.is_masked(x):
+        return None
     try:
         given = np.asarray(x)
         if given.dtype.kind not in _REAL or (given.dtype.kind == "O" and None in given.ravel()):
@@ -163,6 +166,24 @@ def connected(count: int, *links: npt.NDArray[np.integer]) -> Ints:
         while np.any(root[root] != root):
             root = root[root]
     return np.asarray(np.unique(root, return_inverse=True)[1], dtype=np.int64)
+
+
+def by_place(points: npt.ArrayLike) -> Ints:
+    """Order of points by x, then y, then z, to rounding: on any number of processes the same.
+
+    Args:
+        points: Positions, (n, 3), length.
+
+    Returns:
+        Their numbers, (n,).
+
+    Example:
+        >>> by_place([[1.0, 0, 2], [1.0 + 1e-15, 0, 1], [0, 3, 0]]).tolist()
+        [2, 1, 0]
+    """
+    x = np.asarray(points, dtype=np.float64)
+    size = float(np.abs(x).max(initial=0.0)) or 1.0
+    return np.lexsort(np.round(x / size, 9).T[::-1])
 
 
 def blocks(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:

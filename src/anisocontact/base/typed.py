@@ -149,7 +149,7 @@ def _meant(hint: Any) -> Any:
 
 def _is_array(value: Any) -> bool:
     try:
-        return np.asarray(value).dtype.kind in "biuf"
+        return np.asarray(value).dtype.kind in "biuf" and not np.ma.is_masked(value)
     except (TypeError, ValueError):  # rows of different lengths
         return False
 
@@ -183,7 +183,8 @@ def _counts(value: Any) -> bool:
 def _fits_generic(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:
     """Containers with what is in them, and what can be called."""
     if origin is np.ndarray:
-        return isinstance(value, np.ndarray | Sequence) and not isinstance(value, str | bytes)
+        plain = isinstance(value, np.ndarray | Sequence) and not isinstance(value, str | bytes)
+        return plain and not np.ma.is_masked(value)
     if issubclass(origin, Mapping):
         return isinstance(value, Mapping) and _fits_items(of, value)
     if _is_list(origin):
@@ -219,6 +220,8 @@ def _fits_list(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
         return False
     if isinstance(value, np.ndarray) and not (value.ndim and of[0] in _CALLED):
+        return False
+    if np.ma.is_masked(value):
         return False
     if not isinstance(value, Sequence | np.ndarray):
         return not issubclass(origin, Sequence)
@@ -271,6 +274,8 @@ def _plain(hint: Any) -> str:
 
 def _shown(value: Any) -> str:
     """A value, or its type where its own text is long or says nothing."""
+    if np.ma.is_masked(value):
+        return "an array with masked entries"
     text = repr(value)
     plain = isinstance(value, str | int | float | complex | Sequence | Mapping | None)
     return text if plain and len(text) <= 60 else type(value).__name__

@@ -23,7 +23,7 @@ from anisocontact.bulk.volume import Volume, volume_of
 from anisocontact.mesh import Idealisation, Model
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointState:
     """What happens at n points of a body in an increment.
 
@@ -45,7 +45,7 @@ class PointState:
     place: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointResult:
     """What a law says of them.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
+from anisocontact.base.arrays import by_place
 from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.machine import lack
 from anisocontact.base.signals import interrupt, on_signals
@@ -309,7 +310,7 @@ def ran_off_lines(accepted: Accepted) -> list[str]:
     """A line for each contact with points that left the end of the master in an increment."""
     lines = []
     for name, points in accepted.ran_off.items():
-        first = ", ".join(f"{v:.4g}" for v in points[0])
+        first = ", ".join(f"{v:.4g}" for v in points[by_place(points)[0]])
         count = f"{len(points)} point{'s' * (len(points) > 1)}"
         lines.append(f"  {name}: {count} ran off the end of the master, the first at ({first})")
     return lines

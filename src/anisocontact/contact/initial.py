@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.arrays import by_place
 from anisocontact.base.errors import InputError
 from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master
@@ -23,7 +24,7 @@ OVERLAP = 1e-5
 NEAR = 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Overlap:
     """Slave points below the surface of the master.
 
@@ -213,21 +214,14 @@ _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field"
 
 
 def _refuse(contact: Beginning, bad: Flags, text: str, field: str, normal: Floats) -> None:
-    found = np.flatnonzero(bad)
-    local: Any = None
-    if found.size:
-        first = found[0]
-        vectors = (
-            contact.points[first],
-            contact.slave_points.outward[first],
-            normal[first],
-        )
-        local = [_shown(vector) for vector in vectors]
+    vectors = np.hstack([contact.points, contact.slave_points.outward, normal])[bad]
+    first = vectors[by_place(vectors[:, :3])[:1]]
     comm = contact.space.mesh.comm
-    everywhere = [one for one in comm.allgather(local) if one is not None]
-    count = comm.allreduce(int(found.size))
-    if everywhere:
-        point, outward, met = everywhere[0]
+    everywhere = np.concatenate(comm.allgather(first))
+    count = comm.allreduce(len(vectors))
+    if len(everywhere):
+        first = everywhere[by_place(everywhere[:, :3])[0]]
+        point, outward, met = map(_shown, first.reshape(3, 3))
         message = text.format(count=count, point=point, outward=outward, normal=met)
         raise InputError(message, field)
 

@@ -20,7 +20,7 @@ from anisocontact.mesh.idealisation import SOLID, Idealisation
 type Couplings = tuple[Locals, Locals, Floats]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FacetQuadrature:
     """Quadrature points of m facets, q on each, with the k nodes of a facet.
 

@@ -49,7 +49,7 @@ Example:
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SlaveSurface:
     """The slave at n points, for directions that it carries and its turn against the master.
 
@@ -73,7 +73,7 @@ class SlaveSurface:
         return a, b, c
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Response:
     """What an interface answers to positions of n slave points.
 

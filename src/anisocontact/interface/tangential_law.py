@@ -13,7 +13,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LawState:
     """What n points remember, turned to where they are now.
 
@@ -33,7 +33,7 @@ class LawState:
     internal: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LawKinematics:
     """What happens to n points in contact in this step.
 
@@ -57,7 +57,7 @@ class LawKinematics:
     dt: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LawResult:
     """Force, tangent and new state of n points.
 

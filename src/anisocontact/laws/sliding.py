@@ -15,7 +15,7 @@ from anisocontact.base.typed import typed
 from anisocontact.surfaces import default_threads
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Slide:
     """Forces of a batch of n points.
 

@@ -37,7 +37,7 @@ CORNERS = {
 FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
 
 
-@dataclass
+@dataclass(eq=False)
 class WholeMesh:
     """Nodes, cells and names.
 

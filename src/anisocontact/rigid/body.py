@@ -21,7 +21,7 @@ from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pose:
     """Where a rigid body is.
 

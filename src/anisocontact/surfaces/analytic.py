@@ -17,7 +17,7 @@ from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Jet:
     """Position and derivatives of a surface at n points.
 
@@ -42,7 +42,7 @@ class Jet:
 PROJECTION_STATUS = ("interior", "edge", "corner", "singular", "ambiguous", "failed")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Projection:
     """Closest points of a surface.
 

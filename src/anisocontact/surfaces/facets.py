@@ -26,7 +26,7 @@ FACET_STATUS = ("on", "off", "beyond", "failed")
 FEATURES = ("interior", "edge", "vertex")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FacetProjections:
     """Closest points of a surface of facets.
 
@@ -67,7 +67,7 @@ class FacetProjections:
         return FacetProjections(**{name: value[which] for name, value in vars(self).items()})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FacetSets:
     """A set of facets for each of n points.
 

@@ -14,7 +14,7 @@ from anisocontact.base.arrays import blocks
 from anisocontact.base.errors import InputError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointGeometry:
     """Metric, normal, curvature and connection at n points.
 
@@ -49,7 +49,7 @@ class PointGeometry:
         return np.asarray(0.5 * np.trace(self.h_mixed, axis1=1, axis2=2))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Geometry(PointGeometry):
     """Geometry of an analytic surface, with derivatives along its coordinates.
 
@@ -112,7 +112,7 @@ class Geometry(PointGeometry):
         raise InputError(f"{index!r} given, allowed: co, contra", field="index")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GeometryDerivatives:
     """Derivatives of a surface's geometry along its coordinates at n points.
 

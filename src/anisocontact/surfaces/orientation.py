@@ -10,7 +10,7 @@ from anisocontact import _core
 from anisocontact.base.array_types import Flags, Locals
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Orientation:
     """Which way the normals of a surface point.
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import by_place
 from anisocontact.contact import facet_size
 from anisocontact.contact.held_points import facet_of
 from anisocontact.interface import FAILURE, STATUS
@@ -42,7 +43,7 @@ def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> lis
     for kind in kinds:
         found = _everywhere(problem, list(kind))
         if found:
-            return found
+            return [found[k] for k in by_place([one.position for one in found])]
     worst = _everywhere(problem, list(_worst(problem, residual)))
     return [max(worst, key=lambda one: one[0])[1]] if worst else []
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import by_place
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
@@ -40,7 +41,7 @@ class Progress:
     contacts: dict[str, dict[str, int]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Accepted:
     """An increment, or a part of one, that converged.
 
@@ -173,7 +174,7 @@ class StoppedError(RuntimeError):
         self.points: Floats = np.zeros((0, 3)) if points is None else points
         where = ""
         if len(self.points):
-            first = ", ".join(f"{v:.6g}" for v in self.points[0])
+            first = ", ".join(f"{v:.6g}" for v in self.points[by_place(self.points)[0]])
             where = f"; {len(self.points)} slave points failed, the first at ({first})"
         elif culprits and culprits[0].why not in reason:
             where = f"; {culprits[0]}"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 import numpy as np
 
 from anisocontact.base.blas_threads import with_one_thread
-from anisocontact.base.errors import tell_script
+from anisocontact.base.errors import InputError, tell_script
 from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
@@ -64,8 +64,8 @@ class Solver:
         cautions: What the steps ask for that is at the limit of a model, a line each.
 
     Raises:
-        InputError: A step names an unknown facet group, shared nodes get two values, the strategy
-            cannot solve the problem, or supports turn a body at small strain by more
+        InputError: There is no step, one names an unknown facet group, shared nodes get two values,
+            the strategy cannot solve the problem, or supports turn a body at small strain by more
             than five degrees.
 
     Example:
@@ -92,6 +92,8 @@ class Solver:
         warn_of(problem.contacts)
         self.problem = problem
         self.steps = list(steps)
+        if not self.steps:
+            raise InputError("no step given, one or more needed", field="steps")
         self.limits = limits or Limits()
         self.doubtful = problem.check(self.steps)
         check_events(problem, self.steps)
@@ -114,6 +116,7 @@ class Solver:
         self._failures = Failures(problem, self.doubtful)
         self._made_of = described_run(problem, self.steps)
 
+    @typed
     def run(
         self,
         on_iteration: Callable[[Progress], None] | None = None,
@@ -121,7 +124,9 @@ class Solver:
         on_note: Callable[[str], None] | None = None,
         on_warning: Callable[[str], None] | None = None,
     ) -> Iterator[Accepted]:
-        """Solve increment by increment.
+        """Solve increment by increment, from where the run has come.
+
+        Once all steps are done there is nothing left to solve, and a warning says so.
 
         Args:
             on_iteration: Called at the start of each attempt and after each Newton iteration.
@@ -142,6 +147,8 @@ class Solver:
         warn = on_warning or noted
         for text in self.doubtful:
             warn(text)
+        if self.place.step == len(self.steps):
+            warn("all steps are done: nothing is left to solve")
         self._energy.begin()
         self._predictor.begin()
         if not (self.choice.strategy.reduces and self._kept):
