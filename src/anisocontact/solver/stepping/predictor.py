@@ -6,6 +6,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
+from anisocontact.bulk import small_strain
 from anisocontact.contact import Contact
 from anisocontact.rigid import RigidBody
 from anisocontact.solver.stepping.increment_control import IncrementControl
@@ -36,7 +37,12 @@ class Predictor:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self.travels = problem, False
-        self._bodies = bodies(problem.model)
+        #: Those that a turn does not strain: at small strain it would.
+        self._turning = [
+            body
+            for body in bodies(problem.model)
+            if not any(small_strain(problem.materials[part]) for part in body.parts)
+        ]
         #: Whether a turn about each axis is a rigid motion.
         motions = problem.model.idealisation.motions
         self._rigid = np.array([turn in motions for turn in ("rx", "ry", "rz")])
@@ -123,11 +129,11 @@ class Predictor:
             self.refuse(ahead, float(left))
 
     def _turn_on(self, first: Vec, last: Vec, before: Vec, ratio: float) -> None:
-        """Let deformable bodies that turn go on about their axes, see `turned_on`; collective."""
+        """Let bodies that turn go on about their axes, see `turned_on`; collective."""
         layout, at_rest = self._problem.layout, self._problem.model.positions
         (now, _), (then, _) = layout.split(last), layout.split(before)
         to = first.array[: layout.owned].reshape(-1, 3)
-        for body in self._bodies:
+        for body in self._turning:
             own = body.nodes
             x = at_rest[own]
             found = turned_on(x + then[own], x + now[own], ratio, layout.total, self._rigid)
