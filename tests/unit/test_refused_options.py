@@ -112,7 +112,7 @@ def test_precisions_that_would_end_the_process_are_refused(fe: Any, name: str, w
     block = fe.block(fe.interface(), cells=(1, 1, 1))
     said = f"^options.{name}: {word!r} given, allowed: single, double"
     with pytest.raises(InputError, match=said):
-        Solver(block.problem, [], options={name: word})
+        Solver(block.problem, [Step("press", 1, {"block.top": {"z": -0.01}})], options={name: word})
 
 
 @pytest.mark.parametrize("option", ["snes_rtol", "snes_atol"])
