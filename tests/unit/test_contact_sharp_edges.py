@@ -30,6 +30,7 @@ def _normals(*degrees: float) -> np.ndarray:
         ((-10, 35, 80), [1, 1, 0]),
         ((60, 150), [1, 0]),  # what faces the master most
         ((0, 45), [1, 1]),  # chords of a coarse circle
+        ((0, 180), [1, 0]),  # the front of a closed crack, whose normals cancel exactly
     ],
 )
 def test_facets_that_count(degrees: tuple[float, ...], kept: list[int]) -> None:

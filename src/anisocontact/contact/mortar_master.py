@@ -19,6 +19,7 @@ from anisocontact.contact.contact_planes import (
     held_directions,
 )
 from anisocontact.contact.facet_answer import found_on_all
+from anisocontact.contact.facet_mesh import outward_normals
 from anisocontact.contact.facet_pairs import facing_pairs, largest_radius
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
@@ -76,13 +77,18 @@ class MortarMaster(MeshedMaster):
         self_contact: bool = False,
     ) -> None:
         self._points = points
-        self._self_contact = SelfContactSides(points, sides.gathered) if self_contact else None
+        self._self_contact: SelfContactSides | None = None
+        if self_contact:
+            normals = outward_normals(sides.searched, sides.reference)
+            self._self_contact = SelfContactSides(points, sides.gathered, normals)
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
         self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
         self._prescribed = PrescribedNodes(self._gathered)
+        shared = self._gathered.local_names(np.unique(sides.master.nodes))
+        self._has_front = bool(np.isin(points.nodes[:, 0], shared).any())
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
@@ -125,11 +131,23 @@ class MortarMaster(MeshedMaster):
 
     @property
     def _located(self) -> Flags:
-        """Slave nodes with a master opposite."""
+        """Slave nodes with a master opposite, which for the front of a crack is itself."""
         at = self._at
         covered = at.weights.area > COVERED * self._points.quadrature.areas
         opposed = at.planes.now.cosine > OPPOSED
-        return np.asarray(covered & opposed & (at.opposite[0].facet >= 0))
+        found = np.asarray(covered & opposed & (at.opposite[0].facet >= 0))
+        return found & ~self._opposite_themselves if self._has_front else found
+
+    @property
+    def _opposite_themselves(self) -> Flags:
+        """Nodes of the front of a crack, which both lips have: nothing opens or slides there.
+
+        Once the lips slide, what is left of their own weight would let a pressure grow that
+        displacements of their neighbours hardly change.
+        """
+        weights = self._at.weights
+        same = self._gathered.local_names(weights.masters) == self._points.nodes[:, :1]
+        return np.asarray((same & (weights.weight != 0.0)).any(axis=1))
 
     @override
     def initial_state(self) -> State:

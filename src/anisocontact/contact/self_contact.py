@@ -3,21 +3,22 @@
 Of two facets that face each other one is the slave, so that every gap is held once, by multipliers
 that the displacements can hold: the sides of a surface that folds onto itself are told apart where
 it does. The graph of the pairs is coloured with two colours along its minimum spanning tree, the
-closest pairs first. A facet keeps its colour, and with it the nodes their history, while anything
+closest pairs first. What faces one another facet by facet, as the lips of a slit whose meshes
+match, is in as many parts, and facets that go on smoothly beside each other have one colour where
+pairs leave it open. A facet keeps its colour, and with it the nodes their history, while anything
 faces it. Where the tree leaves a pair of one colour, as where three walls meet, the facet with the
 lower number is the slave of that pair.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Codes, Ints
+from anisocontact.base.array_types import Codes, Floats, Ints, Sparse
 from anisocontact.contact.facet_pairs import FacetPairs
 from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.sharp_edges import SMOOTH, Around
 from anisocontact.contact.slave_nodes import SlaveNodes
 
 #: Colours of a facet that faces another one.
@@ -25,11 +26,19 @@ SLAVE, MASTER = 1, -1
 
 
 class SelfContactSides:
-    """Sides of the facets of a group that meets itself, the same on all processes."""
+    """Sides of the facets of a group that meets itself, the same on all processes; collective.
 
-    def __init__(self, points: SlaveNodes, surface: MasterSurface) -> None:
+    Args:
+        points: The slave nodes, with the facets around them.
+        surface: The group as its own master.
+        normals: Outward unit normals of the facets in the reference configuration, (m, 3).
+    """
+
+    def __init__(self, points: SlaveNodes, surface: MasterSurface, normals: Floats) -> None:
         self._around, self._comm = points.around, surface.comm
         self._numbers = surface.in_group(points.keys)
+        beside = self._numbers[_smooth_neighbours(self._around, normals)]
+        self._beside: Ints = np.concatenate(self._comm.allgather(beside))
         count = self._comm.allreduce(len(surface.own.nodes))
         self._side: Codes = np.zeros(count, dtype=np.int8)
         self._accepted = self._side
@@ -48,7 +57,8 @@ class SelfContactSides:
         self._faced = np.union1d(first, second)
         if any(self._comm.allgather(bool((self._side[self._faced] == 0).any()))):
             found = self._comm.allgather((first, second, pairs.apart))
-            self._side = _with_sides(self._side, *map(np.concatenate, zip(*found, strict=True)))
+            gathered = map(np.concatenate, zip(*found, strict=True))
+            self._side = with_sides(self._side, self._beside, *gathered)
         one, other = self._side[first], self._side[second]
         return pairs.take(np.where(one != other, one > other, first < second))
 
@@ -80,7 +90,21 @@ class SelfContactSides:
         self._side = self._accepted
 
 
-def _with_sides(side: Codes, first: Ints, second: Ints, apart: Any) -> Codes:
+def _smooth_neighbours(around: Around, normals: Floats) -> Ints:
+    """Pairs of facets that share a node and go on smoothly, (k, 2).
+
+    Args:
+        around: The facets around each node.
+        normals: Outward unit normals of all facets, (m, 3).
+    """
+    shape = (len(around.offsets) - 1, len(normals))
+    at = scipy.sparse.csr_array((np.ones(len(around.facets)), around.facets, around.offsets), shape)
+    pairs = np.stack(scipy.sparse.triu(at.T @ at, 1).coords, axis=1).astype(np.int64)
+    along = np.einsum("pi,pi->p", normals[pairs[:, 0]], normals[pairs[:, 1]])
+    return np.asarray(pairs[along > SMOOTH])
+
+
+def with_sides(side: Codes, beside: Ints, first: Ints, second: Ints, apart: Floats) -> Codes:
     """Sides of facets that have some, and of others that face each other.
 
     Two more nodes of the graph face the slaves and the masters that are known, and each other. In
@@ -89,25 +113,26 @@ def _with_sides(side: Codes, first: Ints, second: Ints, apart: Any) -> Codes:
 
     Args:
         side: Sides of all facets, 0 for none, (n,).
+        beside: Pairs of facets of one side, where those that face each other leave it open, (k, 2).
         first: One facet of each pair, (p,).
         second: The other one.
         apart: Distance of the pairs, (p,).
     """
     n = len(side)
     known = np.flatnonzero(side)
+    faced = np.union1d(first, second)
+    beside = beside[np.isin(beside, faced).all(axis=1)]
     rank = np.empty(len(apart))
     rank[np.argsort(apart, kind="stable")] = np.arange(len(apart)) + 2.0
-    rows = np.concatenate([known, [n], np.minimum(first, second)])
-    columns = np.concatenate([n + (side[known] == MASTER), [n + 1], np.maximum(first, second)])
-    length = np.concatenate([np.ones(len(known) + 1), rank])
-    order = np.lexsort((length, columns, rows))
-    new = np.ones(len(order), dtype=bool)
-    new[1:] = np.any(np.diff(np.stack([rows, columns])[:, order], axis=1) != 0, axis=0)
-    kept = order[new]
-    graph = scipy.sparse.csr_array((length[kept], (rows[kept], columns[kept])), (n + 2, n + 2))
-    tree = scipy.sparse.csgraph.minimum_spanning_tree(graph)
+    last = len(apart) + 2.0
+    rows = [known, [n], np.minimum(first, second), beside.min(axis=1)]
+    columns = [n + (side[known] == MASTER), [n + 1], np.maximum(first, second), beside.max(axis=1)]
+    length = [np.ones(len(known) + 1), rank, np.full(len(beside), last)]
+    tree = _spanning_tree(n + 2, *map(np.concatenate, (rows, columns, length)))
+    alike = tree * (tree == last)
+    opposed = tree - alike
     # a facet and its image are in one part with those at an odd and at an even distance
-    twofold = scipy.sparse.block_array([[None, tree], [tree.T, None]])
+    twofold = scipy.sparse.block_array([[alike, opposed], [opposed, alike]])
     parts, part = scipy.sparse.csgraph.connected_components(twofold, directed=False)
     own, opposite = part[: n + 2], part[n + 2 :]
     size = np.bincount(own, np.repeat([1.0, 0.0, n + 1.0], [n, 1, 1]), minlength=parts)
@@ -119,7 +144,16 @@ def _with_sides(side: Codes, first: Ints, second: Ints, apart: Any) -> Codes:
         lowest[own] < lowest[opposite],
     )
     out = side.copy()
-    faced = np.union1d(first, second)
     taken = faced[side[faced] == 0]
     out[taken] = np.where(slave[taken], SLAVE, MASTER)
     return out
+
+
+def _spanning_tree(n: int, rows: Ints, columns: Ints, length: Floats) -> Sparse:
+    """Minimum spanning tree of a graph of n nodes, of which edges may be given several times."""
+    order = np.lexsort((length, columns, rows))
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = np.any(np.diff(np.stack([rows, columns])[:, order], axis=1) != 0, axis=0)
+    kept = order[new]
+    graph = scipy.sparse.csr_array((length[kept], (rows[kept], columns[kept])), (n, n))
+    return scipy.sparse.csr_array(scipy.sparse.csgraph.minimum_spanning_tree(graph))

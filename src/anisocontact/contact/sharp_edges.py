@@ -88,7 +88,8 @@ def counting(around: Around, normals: Floats, x: Floats, towards: Towards | None
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     total = np.zeros((n, 3))
     np.add.at(total, owner, own)
-    mean = total / np.linalg.norm(total, axis=1)[:, None]
+    size = np.linalg.norm(total, axis=1)[:, None]
+    mean = total / np.where(size > 0.0, size, 1.0)  # at the tip of a closed slit nothing is left
     counts = np.ones(len(owner))
     sharp = np.zeros(n, dtype=bool)
     sharp[owner[np.einsum("pi,pi->p", own, mean[owner]) < SHARP]] = True

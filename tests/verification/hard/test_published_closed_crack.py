@@ -112,3 +112,34 @@ def test_closed_crack(
     left = np.cos(ASKEW) * np.sin(ASKEW) - FRICTION * normal
     energy = FRICTION * normal * np.pi * left * (1.0 - NU**2) / E
     assert (1.0 - less) * energy < run.accepted[0].energies["friction"] < energy
+
+
+@pytest.mark.parametrize(
+    ("edges", "sides"), [((7, 6), ("upper", "lower")), ((6, 7), ("lower", "upper"))]
+)
+def test_a_crack_that_closes_slides_and_opens(
+    to_the_end: Callable[..., Any],
+    tmp_path: Path,
+    edges: tuple[int, int],
+    sides: tuple[str, str],
+) -> None:
+    """A crack under pressure, then pulled open, bears nothing, and takes a few corrections.
+
+    Source: an open crack has no tractions, not even rounding of them. The nodes at its tips belong
+    to both lips: once these slide, what is left of their weights would press there 15 times as much
+    as elsewhere, also where the crack is open, after 64 corrections. Order 2, the finer lip slave.
+    """
+    mesh(tmp_path / "plate.msh", *edges, 2)
+    case = CASE.format(sides=sides).replace('"plate.top" = 1, "plate.bottom" = 1', "{0}")
+    press, pull = (f'"plate.top" = {p}, "plate.bottom" = {p}' for p in (20, -20))
+    step = f'[[step]]\nname = "open"\nincrements = 2\npressure = {{ {pull} }}\n'
+    run = to_the_end(case.replace("{0}", press) + step, most=10_000)
+    assert not run.cuts
+    assert max(one.iterations for one in run.accepted) <= 8
+    (contact,) = run.problem.contacts
+    assert contact.counts()["open"] == len(contact.points)
+    assert not run.force("open").any()
+    # cos^2 of the angle, over the length of the crack but for half an edge at each tip
+    pressed = np.linalg.norm(run.force("press"))
+    borne = 20.0 * np.cos(ASKEW) ** 2 * np.hypot(1.0, FRICTION) * 2.0
+    assert pressed == pytest.approx(borne, rel=0.1)
