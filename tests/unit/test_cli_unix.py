@@ -22,7 +22,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.compiler import lack_of_compiler
 from anisocontact.base.errors import MachineError
 from anisocontact.base.machine import lack
-from anisocontact.base.signals import on_signals
+from anisocontact.base.signals import held_back, on_signals
 from anisocontact.cli import main
 from anisocontact.results.checkpoint import load_checkpoint
 from anisocontact.results.read import Results
@@ -122,6 +122,29 @@ def test_signals_before_the_run(case: Path, name: str) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (3, "error: interrupted\n")
     assert not (case.parent / "out").exists()
+
+
+def test_signals_while_modules_are_loaded() -> None:
+    """They are answered afterwards, once each: an exception there would end the process in C++."""
+    taken: list[int] = []
+    with on_signals(taken.append):
+        with held_back() as answer:
+            os.kill(os.getpid(), signal.SIGTERM)
+            with held_back():
+                os.kill(os.getpid(), signal.SIGINT)
+            assert taken == []
+            answer()
+            assert sorted(taken) == [signal.SIGINT, signal.SIGTERM]
+            os.kill(os.getpid(), signal.SIGHUP)
+            assert taken[2:] == [signal.SIGHUP]
+        assert len(taken) == 3
+    code = (
+        "import os, signal, sys, anisocontact.cli; main = sys.modules['anisocontact.cli.main']; "
+        "main.started_together = lambda: os.kill(os.getpid(), signal.SIGTERM); "
+        "sys.exit(main.main(['info']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (3, "error: interrupted\n")
 
 
 def test_what_nohup_ignores_stays_ignored() -> None:

@@ -16,28 +16,31 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import MachineError
 from anisocontact.base.import_hooks import without_its_package
+from anisocontact.base.signals import held_back
 
 try:
-    from mpi4py import MPI  # isort: skip
+    with held_back():  # until the compiled modules are whole
+        from mpi4py import MPI  # isort: skip
 
-    import petsc4py  # isort: skip
+        import petsc4py  # isort: skip
 
-    # PETSc would answer signals itself: a closed pipe, a hang-up and TERM with a block of advice
-    # for debugging. They belong to the program; a script that has loaded PETSc before has chosen.
-    petsc4py.init(["anisocontact", "-no_signal_handler"])
+        # PETSc would answer signals itself: a closed pipe, a hang-up and TERM with a block of
+        # advice for debugging. They belong to the program; a script that has loaded PETSc before
+        # has chosen.
+        petsc4py.init(["anisocontact", "-no_signal_handler"])
 
-    import basix
-    import basix.ufl
-    import ufl as _ufl
+        import basix
+        import basix.ufl
+        import ufl as _ufl
 
-    # FFCx' generator of code, which is imported where a form is compiled, is asked for one list.
-    without_its_package("ffcx.codegeneration.C.file_template")
-    import dolfinx
-    from dolfinx import cpp, fem, graph, io  # type: ignore[attr-defined]
-    from dolfinx import la as _la
-    from dolfinx import mesh as dmesh
-    from dolfinx.la import petsc as _la_petsc
-    from petsc4py import PETSc as _PETSc
+        # FFCx' generator of code, which is imported where a form is compiled, is asked for a list.
+        without_its_package("ffcx.codegeneration.C.file_template")
+        import dolfinx
+        from dolfinx import cpp, fem, graph, io  # type: ignore[attr-defined]
+        from dolfinx import la as _la
+        from dolfinx import mesh as dmesh
+        from dolfinx.la import petsc as _la_petsc
+        from petsc4py import PETSc as _PETSc
 except ImportError as missing:
     raise ImportError(
         "the finite-element level is not installed, or not whole: pip install 'anisocontact[fem]', "

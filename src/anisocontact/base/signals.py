@@ -38,6 +38,38 @@ def on_signals(act: Callable[[int], None]) -> Iterator[None]:
 
 
 @contextmanager
+def held_back() -> Iterator[Callable[[], None]]:
+    """Answer signals afterwards, as whoever has set their handlers wants it.
+
+    An exception out of a handler while a compiled module is loaded ends the process, in C++.
+
+    Yields:
+        What answers those that have come, and lets later ones be answered at once.
+    """
+    came: list[tuple[int, FrameType | None]] = []
+    main = threading.current_thread() is threading.main_thread()
+    before = {number: signal.getsignal(number) for number in _ENDING if main}
+    before = {number: handler for number, handler in before.items() if callable(handler)}
+
+    def keep(number: int, frame: FrameType | None) -> None:
+        came.append((number, frame))
+
+    def answer() -> None:
+        while before:
+            signal.signal(*before.popitem())
+        while came:
+            number, frame = came.pop()
+            signal.getsignal(number)(number, frame)  # type: ignore[operator, misc]
+
+    for number in before:
+        signal.signal(number, keep)
+    try:
+        yield answer
+    finally:
+        answer()
+
+
+@contextmanager
 def ended_by_signals() -> Iterator[None]:
     """Raise KeyboardInterrupt where the process is asked to end, as Ctrl-C does."""
     with on_signals(interrupt):

@@ -7,7 +7,7 @@ import atexit
 import gc
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 
 from anisocontact import __version__
@@ -16,7 +16,7 @@ from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.import_hooks import when_used
 from anisocontact.base.machine import lack
 from anisocontact.base.processes import started_together
-from anisocontact.base.signals import ended_by_signals
+from anisocontact.base.signals import ended_by_signals, held_back
 from anisocontact.cli.output import outputs, say
 
 DONE, INTERNAL, BAD_INPUT, STOPPED = 0, 1, 2, 3
@@ -139,12 +139,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as end:  # argparse has said what is wrong, or printed the help
         return end.code if isinstance(end.code, int) else BAD_INPUT
     set_blas_threads()
-    with ended_by_signals():
+    with ended_by_signals(), held_back() as answer_signals:
         together = started_together()
         if together is None:
-            return _run(arguments)
+            return _run(arguments, answer_signals)
         together.quiet()
-        return together.finish(_run(arguments))
+        return together.finish(_run(arguments, answer_signals))
 
 
 def command() -> int:
@@ -162,10 +162,15 @@ def command() -> int:
     return main()
 
 
-def _run(arguments: argparse.Namespace) -> int:
-    """Run a command; its exit code."""
+def _run(arguments: argparse.Namespace, loaded: Callable[[], None]) -> int:
+    """Run a command; its exit code.
+
+    Args:
+        arguments: Those of the command.
+        loaded: Called where its modules are there.
+    """
     with outputs() as (out, _):
-        code = _ended(arguments)
+        code = _ended(arguments, loaded)
         out.flush()
         # a reader that has gone has a right to; what has stopped because of it has said so
         if code == DONE and out.failure is not None and not out.gone:
@@ -174,12 +179,13 @@ def _run(arguments: argparse.Namespace) -> int:
         return code
 
 
-def _ended(arguments: argparse.Namespace) -> int:
+def _ended(arguments: argparse.Namespace, loaded: Callable[[], None]) -> int:
     """Run a command and say what is wrong; its exit code."""
     try:
         for name in _OF_NUMPY:
             when_used(f"numpy.{name}")
         command = import_module(f"anisocontact.cli.{arguments.command}")
+        loaded()
         code: int = command.command(arguments)
         return code
     except (Exception, KeyboardInterrupt, SystemExit) as error:
