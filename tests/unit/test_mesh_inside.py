@@ -43,6 +43,9 @@ def deck(tmp_path, surface: str, upper: str = UPPER, part: bool = False):
         ("4, S1; 7, S1", UPPER, True, "2 of 4 facets lie inside the mesh, such as S1 of element 7"),
         ("4, S1; 7, S2", FLIPPED, False, "1 of 2 facets lie inside the mesh, such as S2 of elem"),
         ("4, S1", "1, 2, 3, 4, 5, 6, 7, 8", False, "1 of 2 hexahedrons have the nodes of another"),
+        ("ALL, S1; 4, S2", "1, 2, 3, 4, 5, 6, 7, 8", False, "1 of 2 hexahedrons have the nodes of"),
+        ("4, S1", "5, 6, 7, 8, 9, 10, 11, 99", True, "element 7 of instance 'A' has node 99, "),
+        ("9, S1", UPPER, True, "it names a face of element 9 of instance 'A', which is not there"),
     ],
 )
 def test_a_part_of_a_surface_inside_is_refused(tmp_path, surface, upper, part, said):

@@ -234,6 +234,22 @@ class Deck:
         """Elements of a set, or the one of a number."""
         return self._of(entry, self.element_sets)
 
+    def as_written(self, number: int) -> tuple[int, str]:
+        """Number of an element in the file, and the instance that has it, or an empty name.
+
+        Example:
+            >>> Deck(offsets={"A": 0, "B": 100}).as_written(107)
+            (7, 'B')
+        """
+        before = [(start, name) for name, start in self.offsets.items() if start < number]
+        start, instance = max(before, default=(0, ""))
+        return number - start, instance
+
+    def told(self, element: int) -> str:
+        """An element as messages name it, "7" or "7 of instance 'B'"."""
+        number, instance = self.as_written(element)
+        return f"{number} of instance {instance!r}" if instance else str(number)
+
     def _renew(self, sets: dict[str, Any], name: str) -> None:
         """Forget what parts call by a name that the assembly gives now."""
         if name.upper() in self.of_parts:

@@ -90,8 +90,9 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
         wrong = numbers[order][places] != nodes
         if wrong.any():
             row, column = np.argwhere(wrong)[0]
-            text = f"element {elements[row]} has node {nodes[row, column]}, which is not there"
-            raise InputError(text)
+            element = elements[row]
+            node = nodes[row, column] - (element - deck.as_written(element)[0])
+            raise InputError(f"element {deck.told(element)} has node {node}, which is not there")
         cell, _ = KNOWN[kind]
         mesh.add_cells(cell, places, [bodies.get(n, "") for n in elements])
     for name, members in _once(deck, deck.node_sets):
@@ -232,7 +233,7 @@ def _faces(
         for number in deck.members_of(entry):
             if number not in deck.elements:
                 if not deck.left_out:
-                    text = f"it names a face of element {number}, which is not there"
+                    text = f"it names a face of element {deck.told(number)}, which is not there"
                     raise InputError(f"surface {name!r}: {text}")
                 continue  # of an element that is no solid
             kind, nodes = deck.elements[number]

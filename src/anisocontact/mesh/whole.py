@@ -110,6 +110,7 @@ class WholeMesh:
         if not joined:
             raise InputError("no element is in a body")
         _check_nodes(joined, self.points)
+        _check_single(joined)
         told = self._told_inside(joined)
         self.notes = (*self.notes, *told.values())
         wrong = 0
@@ -245,12 +246,17 @@ def _check_nodes(kinds: Mapping[Kind, Elements], points: Floats) -> None:
 
 
 def _check_degenerate(kinds: Mapping[Kind, Elements]) -> None:
-    """Refuse cells that name a node twice, and two of the same nodes."""
+    """Refuse cells that name a node twice."""
     for (cell, _), (nodes, _) in kinds.items():
         twice = int((np.diff(np.sort(nodes, axis=1), axis=1) == 0).any(axis=1).sum())
         if twice:
             text = f"{twice} of {len(nodes)} {cell}s name a node twice"
             raise InputError(f"{text}; degenerate cells have to be wedges, pyramids, tetrahedra")
+
+
+def _check_single(kinds: Mapping[Kind, Elements]) -> None:
+    """Refuse two cells of the same nodes, whose faces would lie inside."""
+    for (cell, _), (nodes, _) in kinds.items():
         again = len(nodes) - len(np.unique(np.sort(nodes, axis=1), axis=0))
         if again:
             raise InputError(f"{again} of {len(nodes)} {cell}s have the nodes of another one")
