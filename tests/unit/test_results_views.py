@@ -263,6 +263,20 @@ def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     np.testing.assert_allclose(shown["size"], across, rtol=1e-12)
 
 
+def test_what_cancels_is_drawn_as_nothing(tmp_path):
+    """A disc pressed without friction: the tangential force is rounding, and no curve shows it."""
+    case = tmp_path / "case.toml"
+    text = AROUND.replace("KIND", "plane-strain").replace("coefficients = 0.2", "coefficients = 0")
+    case.write_text(text)
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    run = RunData(tmp_path / "out")
+    run.history["contacts.0.force.x"][:] = 1e-14
+    upper, lower = curves.force(run, 0).axes
+    sizes = [max(abs(line.get_ydata())) for axes in (upper, lower) for line in axes.lines]
+    assert sizes[:-1] == [0.0] * (len(sizes) - 1)
+    assert sizes[-1] > 1.0
+
+
 @pytest.mark.parametrize("adhesion", ["", "adhesion = { stiffness = 50 }"])
 def test_no_domain_of_a_stiffness_that_multipliers_stand_for(tmp_path, adhesion):
     """By default multipliers hold what sticks: there is no elastic slip that a domain could have.

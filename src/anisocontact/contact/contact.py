@@ -284,6 +284,9 @@ class Contact(ContactPair, OneHistory):
     def resultant(self, about: npt.ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Floats, Floats]:
         """Force and moment on the slave after the accepted increment.
 
+        Around an axis the force along x is the radial one, summed, and the moment the torque alone:
+        moments about other axes cancel.
+
         Args:
             about: Point of the moment, (3,), length.
 
@@ -291,7 +294,7 @@ class Contact(ContactPair, OneHistory):
             Force (3,) and moment (3,), force and force times length.
         """
         total = self._comm.allreduce(self.accepted.wrench(np.asarray(about)))
-        return total[:3], total[3:]
+        return total[:3], total[3:] * self.model.idealisation.moments
 
     def turn(self) -> float:
         """Angle by which normal, axes of adhesion or slave turn where friction acts, radian.

@@ -49,9 +49,11 @@ class Idealisation:
         offset: Tangent across the plane where x = 0, (3,), length.
         turn: Its change with the position, (3, 3).
         motions: Components of the motion of a rigid surface that leave it what it is.
+        moments: 0 for components of moments that cancel over the whole body, else 1, (3,).
     """
 
     motions: ClassVar[tuple[str, ...]] = ("x", "y", "z", "rx", "ry", "rz")
+    moments: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)
     entry: ClassVar[Entry] = Entry("solid", "idealisation", "a body in space", ())
     dim: ClassVar[int] = 3
     lateral: bool = True
@@ -295,6 +297,7 @@ class Axisymmetric(_Plane):
         (_LATERAL,),
     )
     motions: ClassVar[tuple[str, ...]] = ("y", "ry")
+    moments: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 0.0)
     turn = 2.0 * math.pi * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
 
     def at_nodes(self, expression: Any, u: Any) -> Any:

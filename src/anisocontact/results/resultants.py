@@ -121,6 +121,7 @@ def resultant(what: Resultant, problem: Problem, nodes: Ints) -> dict[str, Any]:
     arms = _places(problem, what.body_of(problem), nodes) - np.array(what.about)
     moments = np.cross(arms, forces)
     force, moment = problem.comm.allreduce(np.stack([forces.sum(axis=0), moments.sum(axis=0)]))
+    moment = moment * problem.model.idealisation.moments
     return {"force": force.tolist(), "moment": moment.tolist()}
 
 

@@ -23,6 +23,8 @@ BESIDE = 0.04
 _BEHIND: dict[str, Any] = {"lw": 7.0, "alpha": 0.3, "zorder": 1.5, "solid_capstyle": "butt"}
 #: Component along x of a normal from which on forces along it are radial ones in part.
 _RADIAL = 0.01
+#: Share of pressure times area up to which a component of a resultant is rounding.
+_ROUNDING = 1e-9
 _DOMAIN = "adhesion domain at the end of each step"
 
 
@@ -32,7 +34,7 @@ def force(run: RunData, contact: int) -> Figure:
     frame, seen_along = view.frame, view.closed
     if run.around_an_axis and abs(frame.normal[0]) > _RADIAL:
         frame, seen_along = Frame.across(np.array([0.0, 1.0, 0.0])), True
-    forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
+    forces = np.vstack([np.zeros(3), _resultants(run, contact)])
     shown = [run.is_resultant(axis) for axis in frame.axes]
     tangential = frame.of(forces) * shown
     label, distance = run.path_length()
@@ -59,6 +61,13 @@ def force(run: RunData, contact: int) -> Figure:
         axes.grid(alpha=0.3)
     _name_steps(run, upper, at)
     return figure
+
+
+def _resultants(run: RunData, contact: int) -> Floats:
+    """Forces on the slave, (rows, 3); components that forces of points cancel in are zero."""
+    forces, of_contact = run.vectors(f"contacts.{contact}.force"), f"contacts.{contact}"
+    pressed = run.history[f"{of_contact}.max_pressure"] * run.history[f"{of_contact}.area"]
+    return np.where(np.abs(forces) > _ROUNDING * np.max(pressed, initial=0.0), forces, 0.0)
 
 
 def domain(run: RunData, contact: int) -> Figure:
