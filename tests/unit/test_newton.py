@@ -73,7 +73,7 @@ def _at(system: Valley, a: float, b: float) -> Vec:
 
 
 def _solved(full_steps: bool, **options: Any) -> tuple[Any, np.ndarray]:
-    system = Valley(1e6)
+    system = Valley(1e3)
     newton, x = _newton(system, **options), _at(system, -1.2, 1.44)
     result = newton.solve(x, full_steps)
     newton.close()
@@ -89,6 +89,32 @@ def test_a_search_that_creeps_is_given_up():
     assert not again.reason
     assert again.iterations <= 3
     np.testing.assert_allclose(x, 1.0, rtol=1e-12)
+
+
+class Uphill(Valley):
+    """A valley whose tangent has the wrong sign: no share of a correction lowers the residual."""
+
+    evaluations = 0
+
+    def evaluate(self, x: Vec) -> np.ndarray:
+        self.evaluations += 1
+        return super().evaluate(x)
+
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        grown = super().tangent(x, out)
+        out.scale(-1.0)
+        return grown
+
+
+def test_a_search_that_finds_nothing_ends_after_a_dozen_halvings():
+    """PETSc's own limit, 1e-12 of a correction, is 40 of them, and rounding takes it for a gain."""
+    system = Uphill(10.0)
+    newton = _newton(system)
+    result = newton.solve(_at(system, -1.2, 1.0))
+    newton.close()
+    assert "the line search got stuck" in result.reason
+    assert result.iterations == 0
+    assert system.evaluations <= 1 + 13
 
 
 def test_steps_without_search_are_never_given_up_for_creeping():
