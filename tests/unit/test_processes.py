@@ -93,31 +93,59 @@ def test_an_error_on_some_ranks_ends_all(case: Path, where: str) -> None:
     assert "it failed" in (folder / "run.log").read_text()
 
 
+LAW = """
+import numpy as np
+from mpi4py import MPI
+from anisocontact.bulk import PointResult
+from anisocontact.interface import LawResult
+
+class Own:
+    internal, calls = 0, 0
+    def count(self):
+        self.calls += 1
+        if MPI.COMM_WORLD.rank == 1 and self.calls > {after}: raise ValueError("too fast")
+    def update(self, state, kinematics):
+        self.count()
+        n = len(kinematics.pressure)
+        none, block = np.zeros((n, 2)), np.zeros((n, 2, 2))
+        at = state.internal, none[:, 0], none[:, 0]
+        return LawResult(none, none, block, none, block, block, *at)
+
+class Spring(Own):
+    history, young = {{}}, 1e3
+    def update(self, state):
+        self.count()
+        eye = np.eye(3)
+        unit = np.einsum("ik,jl->ijkl", eye, eye) + np.einsum("il,jk->ijkl", eye, eye)
+        slope = np.tile(500.0 * unit, (len(state.strain), 1, 1, 1, 1))
+        return PointResult(1e3 * state.strain, slope, {{}})
+"""
+
+
 @pytest.mark.mpi
 @pytest.mark.ci
 @pytest.mark.slow
-def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
+@pytest.mark.parametrize(
+    ("law", "after", "code"), [("Own", 0, 2), ("Own", 12, 3), ("Spring", 12, 3)]
+)
+def test_a_law_in_python_that_fails_on_one_rank(
+    case: Path, law: str, after: int, code: int
+) -> None:
     """The run stops with the file and line of the law, on both processes, and says it once."""
-    (case.parent / "own.py").write_text(
-        "import numpy as np\n"
-        "from mpi4py import MPI\n"
-        "from anisocontact.interface import LawResult\n\n"
-        "class Own:\n"
-        "    internal = 0\n"
-        "    def update(self, state, kinematics):\n"
-        "        if MPI.COMM_WORLD.rank == 1: raise ValueError('too fast')\n"
-        "        n = len(kinematics.pressure)\n"
-        "        none, block = np.zeros((n, 2)), np.zeros((n, 2, 2))\n"
-        "        at = state.internal, none[:, 0], none[:, 0]\n"
-        "        return LawResult(none, none, block, none, block, block, *at)\n"
-    )
-    text = case.read_text()
-    first, last = text.index("adhesion ="), text.index("[[step]]")
-    table = '[contact.python]\nfile = "own.py"\nlaw = "Own"\nisotropic = true\n'
-    case.write_text(text[:first] + table + text[last:])
+    (case.parent / "own.py").write_text(LAW.format(after=after))
+    text, table = case.read_text(), f'file = "own.py"\nlaw = "{law}"\n'
+    if law == "Own":
+        first, last = text.index("adhesion ="), text.index("[[step]]")
+        text = f"{text[:first]}[contact.python]\n{table}isotropic = true\n{text[last:]}"
+    else:
+        first, last = text.index("model ="), text.index("[", text.index("model ="))
+        text = f'{text[:first]}model = "python"\n{table}{text[last:]}'
+    case.write_text(text)
     done = run(case, "", "")
-    assert done.returncode == 2, done.stderr
-    assert done.stderr.count("own.py, line 8: ValueError: too fast") == 1
+    assert done.returncode == code, done.stderr
+    assert done.stderr.count("own.py, line 11: ValueError: too fast") == 1
+    if code == 3:
+        assert json.loads((case.parent / "out" / "summary.json").read_text())["steps"] > 0
 
 
 @pytest.mark.mpi

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Callable
 from io import StringIO
-from typing import Any
+from typing import Any, cast
+
+from anisocontact.base.errors import InputError
 
 #: What launchers tell each of several processes: MPICH and Slurm, PMIx, Open MPI.
 _TOLD = ("PMI_RANK", "PMI_FD", "PMIX_RANK", "OMPI_COMM_WORLD_RANK")
@@ -98,6 +101,30 @@ class Together:
         if self._said is not None and sys.__stderr__ is not None:
             sys.__stderr__.write(self._said.getvalue())
             sys.__stderr__.flush()
+
+
+def on_all[T](comm: Any, ask: Callable[[], T]) -> T:
+    """What is asked on every rank; a mistake of one is raised on all, which would wait for it.
+
+    Args:
+        comm: Communicator; the call is collective.
+        ask: What may raise an `InputError` on some ranks.
+
+    Raises:
+        InputError: That of the first rank that has one.
+    """
+    if comm.size == 1:
+        return ask()
+    answer: T | None = None
+    said: tuple[str, str] | None = None
+    try:
+        answer = ask()
+    except InputError as mistake:
+        said = str(mistake), mistake.field
+    first = next((one for one in comm.allgather(said) if one is not None), None)
+    if first is not None:
+        raise InputError(*first)
+    return cast(T, answer)
 
 
 def launched() -> bool:

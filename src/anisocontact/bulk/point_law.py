@@ -15,6 +15,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import ufl
+from anisocontact.base.processes import on_all
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.bulk.materials import constant, small_strain
@@ -189,7 +190,7 @@ class BodyPoints(AtPoints):
         before = {name: self._read(variable) for name, variable in self.variables.items()}
         state = PointState(strain.value, before, float(self._dt.value), self.places)
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-            result = self._law.update(state)
+            result = on_all(self._mesh.comm, lambda: self._law.update(state))
             self._write(self._piola, strain.piola(result.stress))
         self._last = strain, result
 

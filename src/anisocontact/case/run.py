@@ -139,12 +139,16 @@ def _run_and_close(
 
     Raises:
         RunError: Something unforeseen happened.
+        InputError: A mistake has shown on this process, and other processes are stuck.
         MachineError: The machine lacks something, and other processes are stuck.
         KeyboardInterrupt: The run was interrupted at once, and other processes are stuck.
     """
     together = built.problem.together
     try:
         end = _solve(built, writer, request, facts)
+    except InputError as error:  # on this process alone: others would wait in the last results
+        writer.abandon(str(error))
+        raise
     except KeyboardInterrupt:
         end = _End("stopped", "interrupted")
         if together.met() is None:
@@ -277,6 +281,8 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
         writer.keep_failed(stop.failed)
         return _End("stopped", str(stop))
     except InputError as error:  # of a law in Python, or a mistake that shows where a step begins
+        if built.problem.together.met() is None:
+            raise
         writer.log(f"stopped: {error}")
         writer.keep_failed(error.failed)
         return _End("stopped", str(error), curable=not built.solver.place.begun)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Self, override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Floats, Locals
+from anisocontact.base.processes import on_all
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.integration_points import IntegrationPoints
@@ -150,7 +152,9 @@ class AnalyticMaster(Master):
         slave, turned = self._slave, self._turned(self._there)
         x = slave.quadrature.reference + self._way
         laws = self._derivative if derivative else self._laws
-        response = laws.update(state, x, dt, slave=turned)
+        update = partial(laws.update, state, x, dt, slave=turned)
+        in_python = self.interface.tangential.in_python
+        response = on_all(self._comm, update) if in_python else update()
         snapshot = Snapshot(x, slave.areas(self._there), response)
         return AnalyticAnswer(slave, self._there, turned, self.body, snapshot)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Protocol
@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Locals
-from anisocontact.base.errors import InputError
+from anisocontact.base.processes import on_all
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import Couplings
@@ -254,19 +254,4 @@ def found_on_all(
         of: As of `FacetLaw.evaluate`.
     """
     evaluate = partial(law.evaluate, state, of, dt, batch)
-    return _on_all(comm, evaluate) if law.in_python else evaluate()
-
-
-def _on_all[T](comm: Any, ask: Callable[[], T]) -> T:
-    """What is asked on every rank; a mistake of one is raised on all, which would wait for it."""
-    answer: T | None = None
-    said: tuple[str, str] | None = None
-    try:
-        answer = ask()
-    except InputError as mistake:
-        said = str(mistake), mistake.field
-    first = next((one for one in comm.allgather(said) if one is not None), None)
-    if first is not None:
-        raise InputError(*first)
-    assert answer is not None
-    return answer
+    return on_all(comm, evaluate) if law.in_python else evaluate()
