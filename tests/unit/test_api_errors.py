@@ -288,6 +288,18 @@ def test_what_is_done_is_said(model):
         assert not list(solver.run())
 
 
+def test_solvers_that_take_turns_are_refused(model):
+    """Requirement: two runs of one problem, as of two cells of a notebook, do not mix their steps;
+    one after the other they go, and one that was left goes on as long as it is alone."""
+    problem, steps = held(model), [Step("a", 2, HELD), Step("b", 1, HELD)]
+    first, second = (Solver(problem, steps) for _ in range(2))
+    next(first.run()), next(first.run())
+    assert len(list(second.run())) == 3
+    with pytest.raises(InputError, match="problem: another solver has begun a step of it since"):
+        list(first.run())
+    assert len(list(Solver(problem, steps).run())) == 3
+
+
 def test_what_holds_arrays_is_compared_as_an_object():
     """Requirement: `==` of what scripts are given is an answer, where NumPy has none for arrays."""
     response = INTERFACE.update(START, [[0, 0, -1.0]])

@@ -104,6 +104,7 @@ class Solver:
         self.choice = choose(strategy, self._task)
         self._options = Database(options_prefix, self._task.options)
         self._newton: IncrementSolver | None = None
+        self._begun: int | None = None
         self._kept: Arrays = {}
         self._waiting: Arrays = {}
         self._on_iteration: Callable[[Progress], None] | None = None
@@ -140,6 +141,7 @@ class Solver:
 
         Raises:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
+            InputError: Another solver has begun a step of the problem meanwhile.
         """
         self._on_iteration, self._on_cut = on_iteration, on_cut
         note = on_note or (lambda _: None)
@@ -190,6 +192,7 @@ class Solver:
         )
         self._turns.kink, self._turns.refused = kink, (refused[0], refused[1])
         self.problem.restore(kept, self.steps[: place.steps_begun], place.stopped)
+        self._begun = self.problem.begun
         self._energy.restore(kept.common["energy_watch"])
         self._waiting = {n: v for n, v in kept.common.items() if n == "event"}
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
@@ -242,6 +245,7 @@ class Solver:
         largest, events = self._begin(step)
         attempts.events = events
         while control.increment <= step.increments:
+            self._check_alone()
             last = self.problem.accepted()
             if self._slides_before_end(step, events):
                 continue
@@ -275,8 +279,10 @@ class Solver:
             looks for its event.
         """
         place, control = self.place, self.place.control
+        self._check_alone()
         if not place.begun:
             self.problem.begin(step)
+            self._begun = self.problem.begun
             self._turns.begin()
             self._predictor.forget()
             place.begun = True
@@ -289,6 +295,12 @@ class Solver:
         events.restore(self._waiting)
         self._waiting = {}
         return largest, events
+
+    def _check_alone(self) -> None:
+        """Refuse to go on where another solver has moved the problem away meanwhile."""
+        if self._begun not in (None, self.problem.begun):
+            text = "another solver has begun a step of it since: one at a time, each to its end"
+            raise InputError(text, field="problem")
 
     def _slides_before_end(self, step: Step, events: EventWatch) -> bool:
         """Whether friction cannot hold the loads at the end of a part that ends with sliding."""

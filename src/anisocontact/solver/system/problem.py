@@ -70,6 +70,7 @@ class Problem(ComposedSystem):
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
+        begun: How many steps have begun.
         flowed: Work of the last accepted increment if bodies flowed in it.
         evaluation: Forces at the state of the last evaluation.
 
@@ -115,6 +116,7 @@ class Problem(ComposedSystem):
         self.rotations = Rotations(model, materials)
         self.evaluation = Evaluation(assembly, self._bodies)
         self.load_factor = self.dt = 0.0
+        self.begun = 0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
         self.flowed: EndsWork | None = None
@@ -161,6 +163,7 @@ class Problem(ComposedSystem):
         """
         check_at_rest(self.model, "model")
         start = self.u.x.array.copy()
+        self.begun += 1
         self._restart_state.begin()
         begin_step(self._parts, step, start, self._accepted.reaction, again)
         self._tangent.begin(step)
