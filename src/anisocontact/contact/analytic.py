@@ -116,6 +116,7 @@ class AnalyticMaster(Master):
     ) -> None:
         self.interface, self.body, self._slave, self._comm = interface, body, slave, comm
         self._sees_slave = interface.takes_slave()
+        self.extent = interface.surface.extent
         self._way = np.zeros_like(slave.quadrature.reference)
         self._there = slave.quadrature.at_rest
         self.take(interface, interface)

@@ -271,10 +271,11 @@ class ContactPair:
         """Forces that would move every point of the trial to the origin, norm over this rank.
 
         The machine's precision times this is the round-off of the contact forces: positions are
-        known to a share of their distance from the origin. Points that have met their master count
-        where the trial leaves them open as well: that share says which of them do.
+        known to a share of their distance from the origin, and those of a surface to a share of
+        what it is made of, such as its radius. Points that have met their master count where the
+        trial leaves them open as well: that share says which of them do.
         """
-        distance = np.linalg.norm(self.current.points, axis=1)
+        distance = np.linalg.norm(self.current.points, axis=1) + self.master.extent
         if self.master.body is not None:
             distance += np.linalg.norm(self.master.body.position)
         least = self.trials.penalty * self.current.areas * self.meeting()

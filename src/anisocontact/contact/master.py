@@ -73,6 +73,8 @@ class Master(Protocol):
         groups: Facet group of it, if it is one.
         body: Rigid body that carries it, if one does.
         size: Length of its facets, 0 if it has none.
+        extent: Lengths that it is computed from beside places of nodes, to a share of which its own
+            places are rounded.
         reach: Distance within which it is searched, length.
         retraceable: Whether it answers at any state from the accepted one as if nothing was before.
     """
@@ -80,6 +82,7 @@ class Master(Protocol):
     groups: tuple[str, ...] = ()
     body: RigidBody | None = None
     size: float = 0.0
+    extent: float = 0.0
     reach: float = np.inf
     retraceable: bool = True
 

@@ -84,7 +84,8 @@ class Adhesion(CopiedByArguments):
         model: Name in `registry.adhesion_models()`.
         directions: Axes of the tensors; may be left out where both values of every pair are
             equal, or one number is given for both.
-        directions_on: "master" or "slave": the body that carries the directions.
+        directions_on: "master" or "slave": the body that carries the directions. Angles count about
+            the normal of the master on either: with the sides swapped they change their sign.
         **parameters: The model's parameters, such as `stiffness`, the eigenvalues of -B
             [stress/length].
 
@@ -138,7 +139,8 @@ class Friction(CopiedByArguments):
             are equal, or one number is given for both.
         directions_second: Axes of the second surface, for a model of two surfaces that is not the
             same all around.
-        directions_on: "master" or "slave": the body that carries the directions.
+        directions_on: "master" or "slave": the body that carries the directions. Angles count about
+            the normal of the master on either: with the sides swapped they change their sign.
         directions_second_on: The body that carries those of the second surface. Slave points alone,
             without a surface, have none: all of them then count on the master.
         sliding_rule: Name in `registry.sliding_rules()`.

@@ -195,6 +195,20 @@ class Surface(CopiedByArguments):
         lower, upper, periodic = self.core.domain()
         return lower, upper, periodic
 
+    @property
+    def extent(self) -> float:
+        """Largest lengths that it is made of, length: its points are rounded to a share of them.
+
+        Example:
+            >>> make_surface("sphere", centre=(0, 0, -1e4), radius=1e4).extent
+            20000.0
+        """
+        name, values = self.named
+        lengths = (
+            p for p in registry.entry(registry.surfaces(), name).parameters if p.unit == "length"
+        )
+        return sum(max((abs(v) for v in values[p.name]), default=0.0) for p in lengths)
+
 
 @typed
 def make_surface(name: str, **parameters: object) -> Surface:
