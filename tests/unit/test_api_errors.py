@@ -14,6 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from mpi4py import MPI
 
 import anisocontact
+from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError, RunWarning
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import UserEnergy, make_material
@@ -79,6 +80,8 @@ def model() -> Model:
     lower = BoxSpec((0, 0, -1), (1, 1, 1), (1, 1, 1))
     return build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1)), "base": lower})
 
+
+UP = (0, 0, 1)
 
 WRONG = {
     "another law": (
@@ -251,6 +254,22 @@ WRONG = {
     "an energy of a negative modulus": (
         lambda m: UserEnergy(lambda F: ufl.inner(F, F), young=-1.0),
         "young: -1.0 given, Young's modulus at rest needed, > 0",
+    ),
+    "a complex number": (
+        lambda m: make_surface("plane", point=np.array([0.0, 1j, 0.0]), normal=(0, 0, 1)),
+        "point: .* given, three numbers are needed",
+    ),
+    "a set, which has no order": (
+        lambda m: make_surface("plane", point=(0, 0, 0), normal={0, 1, 2}),
+        "normal: {0, 1, 2} given, three numbers are needed",
+    ),
+    "a masked number": (
+        lambda m: make_surface("plane", point=np.ma.masked_array([0.0] * 3, [0, 1, 0]), normal=UP),
+        "point: .* given, three numbers are needed",
+    ),
+    "masked numbers in a list": (
+        lambda m: make_directions("polar", axis=np.ma.masked_less(np.eye(3)[:2], 0.5)),
+        "axis: .* given, a point and a direction",
     ),
     "an event that is never reached": (
         lambda m: Until(reaction="block.top", value=np.inf),

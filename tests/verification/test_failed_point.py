@@ -91,6 +91,18 @@ def test_a_point_alone_answers_as_in_the_run(make: Any, law: str, tmp_path: Any)
     assert min(read.tangent_errors().values()) < 1e-6
 
 
+@pytest.mark.parametrize("make", [on_surface, on_facets])
+def test_the_first_point_by_its_place_is_kept(make: Any) -> None:
+    """Of several that fail it is the same on any number of processes, whose points differ."""
+    contact = make("core")
+    failure = contact.update(moved(contact, (0.0, 0.0, -0.05)), 0.5).failure
+    for some in (slice(None), slice(1, None, 2)):
+        failure[:] = 0
+        failure[some] = 1
+        first = np.lexsort(np.round(contact.current.points[some], 8).T[::-1])[0]
+        assert contact.failed_point().point == np.arange(len(failure))[some][first]
+
+
 def test_a_run_keeps_the_point_and_the_command_replays_it(
     tmp_path: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -399,3 +399,14 @@ def test_a_few_points_inside_a_master_are_told(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(SideOfMaster, "inside", lambda self: (np.array([3]), np.array([0.4])))
     said = _said(_problem("plane"), place)
     assert "has gone through its master: 1 slave points are up to 0.4 behind it" in said
+
+
+def test_the_first_point_by_its_place_is_named() -> None:
+    """Of several that have gone through, the same on any number of processes."""
+    sides = _problem("plate").sides
+    (watched,) = sides._watched
+    x = watched.one.current.points
+    order = np.arange(len(x))
+    for points in (order, order[::-1], np.roll(order, 5)):
+        found = sides._culprit(watched, "it is behind", points)
+        assert found.position == tuple(x[np.lexsort(np.round(x, 9).T[::-1])[0]])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -343,7 +343,8 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
 def _number(p: Parameter, one: Any, given: object, field: str) -> float:
     """One of the numbers given; not finite where it is beyond all that can be computed with."""
     # texts of NumPy and classes have what makes a number of them, too; rows of an array have it
-    if hasattr(one, "__float__") and not isinstance(one, bool | str | type):
+    unfit = isinstance(one, bool | str | type) or np.iscomplexobj(one) or np.ma.is_masked(one)
+    if hasattr(one, "__float__") and not unfit:
         with suppress(TypeError):
             try:
                 return float(one)
@@ -356,7 +357,7 @@ def _is_list(given: object) -> bool:
     """Whether there are several values; an array without axes is one."""
     if isinstance(given, np.ndarray):
         return given.ndim > 0
-    return isinstance(given, Iterable) and not isinstance(given, str | bytes)
+    return isinstance(given, Iterable) and not isinstance(given, str | bytes | Set | Mapping)
 
 
 def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
@@ -365,7 +366,7 @@ def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
         a = np.asarray(given)
     except ValueError:  # rows of different lengths
         a = np.asarray(None)
-    fits = p.kind == "array" or a.shape in ((2, 3), (6,))
+    fits = not np.ma.is_masked(given) and (p.kind == "array" or a.shape in ((2, 3), (6,)))
     if not isinstance(given, np.ndarray):  # NumPy takes true for 1 where there are numbers beside
         each = np.asarray(given, dtype=object).ravel() if fits else ()
         fits = fits and not any(isinstance(one, bool | np.bool_) for one in each)

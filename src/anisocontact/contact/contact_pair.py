@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.base.arrays import by_place
 from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
@@ -235,11 +236,12 @@ class ContactPair:
         return self._trial.response
 
     def failed_point(self) -> FailedPoint | None:
-        """The first point of this rank at which the laws have failed in the trial, if any has."""
+        """The first point of this rank, by its place, at which the laws failed in the trial."""
         failure = self.current.response.failure
         if not failure.any():
             return None
-        point = int(np.flatnonzero(failure)[0])
+        failed = np.flatnonzero(failure)
+        point = int(failed[by_place(self.current.points[failed])[0]])
         return self._at_point(point, FAILURE[failure[point]])
 
     def _at_point(self, point: int, failure: str) -> FailedPoint:

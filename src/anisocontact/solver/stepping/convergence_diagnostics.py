@@ -56,12 +56,19 @@ def failed_point(problem: Problem) -> FailedPoint | None:
     """A slave point whose laws failed in the last evaluation, whole; collective.
 
     Returns:
-        The point, on the first rank that has one; None on the others.
+        The first point by its place of the first contact that has one, on its rank; None on the
+        others.
     """
-    every = (contact.failed_point() for contact in problem.contacts)
-    found = next((point for point in every if point is not None), None)
-    having = problem.comm.allgather(found is not None)
-    return found if any(having) and having.index(True) == problem.comm.rank else None
+    found, rank = None, -1
+    for contact in problem.contacts:
+        point = contact.failed_point()
+        here = None if point is None else contact.current.points[point.point].tolist()
+        mine = None if here is None else (problem.comm.rank, *here)
+        known = [one for one in problem.comm.allgather(mine) if one is not None]
+        if known and rank < 0:
+            rank = known[by_place([place for _, *place in known])[0]][0]
+            found = point if rank == problem.comm.rank else None
+    return found
 
 
 def _of_laws(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:

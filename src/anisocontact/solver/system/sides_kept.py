@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.arrays import by_place
 from anisocontact.contact import Contact
 from anisocontact.contact.side_of_master import CRUSHED
 from anisocontact.solver.system.culprit import Culprit
@@ -179,14 +180,14 @@ class SidesKept:
         return float(count / max(total, 1.0)), most, (x0, x1, x2)
 
     def _culprit(self, watched: _Watched, why: str, points: Ints) -> Culprit:
-        """With the first of the points over all ranks."""
+        """With the first of the points by its place, over all ranks."""
         one, local = watched.one, None
         if len(points):
-            first = int(points[0])
+            first = int(points[by_place(one.current.points[points])[0]])
             x, y, z = one.current.points[first].tolist()
             local = ((x, y, z), first, int(one.slave_points.facet[first]))
         known = [place for place in one.space.mesh.comm.allgather(local) if place is not None]
-        position, point, facet = known[0]
+        position, point, facet = known[by_place([place for place, *_ in known])[0]]
         return Culprit("behind", position, why, watched.one.name, point, facet)
 
 
