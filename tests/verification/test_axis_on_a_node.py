@@ -13,8 +13,8 @@ from anisocontact.contact import Contact
 from anisocontact.contact.field_hints import doubtful_fields
 from anisocontact.interface import AdhesionAndFriction, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, BoxSpec, build_box, build_mesh, make_shape
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.mesh import Axisymmetric, Body, BoxSpec, build_box, build_mesh, make_shape
+from anisocontact.solver import Problem, Solver, Step, Turn
 from anisocontact.surfaces import make_surface
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*axis of a direction:anisocontact.ModelWarning")
@@ -56,6 +56,41 @@ def test_the_origin_does_not_matter(field, meshed):
     there = _dragged(2, (3.0, -2.0, 7.0), field, meshed)
     assert there == pytest.approx(here, abs=1e-8 * abs(here).max())
     assert here[0] < -0.2 * here[2]
+
+
+@pytest.mark.parametrize("meshed", [False, True])
+def test_a_body_of_revolution_anywhere_on_its_axis(meshed):
+    """Requirement: what is pressed and twisted has one force and torque wherever the origin is.
+
+    Source: a shift of everything. A body of revolution has a node on the axis, which the friction
+    of its neighbours must not feel: at the origin rounding gave that node a direction or none, and
+    increments were cut, elsewhere the case was refused. Tolerance: of equilibrium, 1e-8.
+    """
+    found = []
+    for low in (0.0, 3.0):
+        bodies = [
+            Body("block", make_shape("rectangle", origin=(0, low), size=(1, 1), cells=(4, 4)))
+        ]
+        if meshed:
+            under = make_shape("rectangle", origin=(0, low - 1), size=(2, 1), cells=(7, 3))
+            bodies.append(Body("base", under))
+        model = build_mesh(bodies, idealisation=Axisymmetric(lateral=not meshed))
+        directions = make_directions("polar", axis=((0, low, 0), (0, 1, 0)), angle=0.4)
+        friction = Friction(coefficients=MU, directions=directions)
+        plane = make_surface("plane", point=(0, low, 0), normal=(0, 1, 0))
+        contact = Contact(model, "block.bottom", "base.top" if meshed else plane, friction)
+        assert not doubtful_fields([contact])
+        rubber = make_material("linear-elastic", E=10.0, nu=0.3)
+        held = {"base.bottom": {"x": 0.0, "y": 0.0}} if meshed else {}
+        still = {} if meshed else {"z": 0.0}
+        steps = [Step("press", 2, held | {"block.top": {"x": 0.0, "y": -0.05} | still})]
+        if not meshed:
+            steps.append(Step("twist", 2, rotation={"block.top": Turn((0, 1, 0), 0.02)}))
+        problem = Problem(model, dict.fromkeys((body.name for body in bodies), rubber), [contact])
+        for _ in Solver(problem, steps).run():
+            pass
+        found.append(np.concatenate(contact.resultant((0.0, low, 0.0))))
+    assert found[1] == pytest.approx(found[0], abs=1e-8 * np.abs(found[0]).max())
 
 
 @pytest.mark.parametrize("cells", [2, 4, 8])

@@ -33,7 +33,8 @@ def doubtful_fields(contacts: Sequence[Contact]) -> list[str]:
 def _on_axes(contacts: Sequence[Contact]) -> list[str]:
     """Contacts with nodes on the axis of a polar or spiral field, where there is no direction.
 
-    They have that of an axis beside them, see `off_axes`. Collective.
+    They have that of an axis beside them, see `off_axes`; in an axisymmetric body, which has no
+    slip there, it is worth no word. Collective.
 
     Args:
         contacts: The contacts.
@@ -43,6 +44,8 @@ def _on_axes(contacts: Sequence[Contact]) -> list[str]:
     """
     found = []
     for contact in contacts:
+        if contact.model.idealisation.dim == 2:
+            continue
         fields = [one.field.named[1] for one in contact.interface.carried if one.field is not None]
         for axis in dict.fromkeys(tuple(values["axis"]) for values in fields if "axis" in values):
             where = _on_axis(contact, np.array(axis))

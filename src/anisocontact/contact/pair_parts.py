@@ -119,9 +119,9 @@ def _on_surface(
     else:
         flip = inward(model.space, facets, quadrature)
         points = IntegrationPoints(quadrature, flip, current_area=current, comm=comm)
-    if model.idealisation.dim == 3:
-        interface = off_axes(interface, points.quadrature.reference, points.size, comm)
     check_symmetry(model.idealisation, interface, points, comm)
+    x = points.quadrature.reference
+    interface = off_axes(interface, x, points.size, comm, model.idealisation)
     found = AnalyticMaster(interface, body, points, comm)
     return PairParts(points, found, interface)
 
@@ -263,10 +263,9 @@ def _on_facets(
     beyond = _beyond(model, seams) if seams else None
     nodes = _nodes_towards(model, slave, master, options, beyond) if options.mortar else None
     sides = make_sides(model, (slave, master), options, nodes, beyond)
-    if model.idealisation.dim == 3:
-        met = model.positions[model.facet_nodes(master)]
-        x = np.concatenate([(nodes or sides.points).quadrature.reference, met])
-        law = off_axes(law, x, facet_size(model, slave), model.mesh.comm)
+    met = model.positions[model.facet_nodes(master)]
+    x = np.concatenate([(nodes or sides.points).quadrature.reference, met])
+    law = off_axes(law, x, facet_size(model, slave), model.mesh.comm, model.idealisation)
     # the masters of two bodies, which contact with a surface does without
     if nodes is not None:
         from anisocontact.contact.mortar_master import MortarMaster
