@@ -73,7 +73,9 @@ def mark_shared(contacts: Sequence[AtSlavePoints]) -> None:
     A slave node is looked at where it is owned, by all contacts that have it.
     """
     own = [one for one in contacts if one.trials.augmented and one.slave_points.at_nodes]
-    if len(own) > 1:
-        nodes = SharedNodes(own)
-        for one in own:
-            one.trials.shared = nodes
+    nodes = [one.slave_points.nodes[:, 0] for one in own]
+    counts = np.bincount(np.concatenate([np.zeros(0, dtype=np.int64), *nodes]))
+    several = [one for one, of in zip(own, nodes, strict=True) if np.any(counts[of] > 1)]
+    shared = SharedNodes(several)
+    for one in several:
+        one.trials.shared = shared

@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.terms.free_modes import ConnectedBody
+from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def deformable(problem: Problem, fraction: float, now: float) -> Iterator[Driven
             local = np.column_stack([force.T @ arms, force.sum(axis=0)])
             sums.append(problem.comm.allreduce(local) + _leads(problem, body, at))
         problem.loads.set_load_factor(problem.load_factor, problem.dt)
-        sides = [body.sides(contact) for contact in free.contacts]
+        (sides,) = sides_of([body], free.contacts)
         yield Driven(
             [f"body {body.name!r}"],
             [

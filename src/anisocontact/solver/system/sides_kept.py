@@ -16,7 +16,7 @@ from anisocontact.base.arrays import by_place
 from anisocontact.contact import Contact
 from anisocontact.contact.side_of_master import CRUSHED
 from anisocontact.solver.system.culprit import Culprit
-from anisocontact.solver.terms.free_modes import ConnectedBody
+from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 
 #: Most nodes of a body on a rank that are looked at.
 MOST_NODES = 200
@@ -110,7 +110,12 @@ class SidesKept:
     def __init__(self, contacts: Sequence[Contact], groups: Sequence[ConnectedBody]) -> None:
         self.partly: list[Behind] = []
         self._reported: set[tuple[str, str]] = set()
-        self._watched = [one for contact in contacts for one in _watched(contact, groups)]
+        sides = sides_of(groups, contacts)
+        self._watched = [
+            one
+            for number, contact in enumerate(contacts)
+            for one in _watched(contact, _slaves(groups, [of[number] for of in sides]))
+        ]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
         """The first body that is not where it may be, the same on all ranks; None if all are.
@@ -197,14 +202,17 @@ def _motions(arms: Floats) -> Floats:
     return np.concatenate([still, np.cross(np.eye(3), arms[:, None, :]).swapaxes(1, 2)], axis=2)
 
 
-def _watched(one: Contact, groups: Sequence[ConnectedBody]) -> list[_Watched]:
-    """The bodies of a slave that are not its master's too; the slave points alone if none is."""
-    sides = [group.sides(one) for group in groups]
-    found = [
-        _body(one, group)
-        for group, (slave, *masters) in zip(groups, sides, strict=True)
-        if slave and not any(masters)
-    ]
+def _slaves(
+    groups: Sequence[ConnectedBody], sides: Sequence[tuple[bool, ...]]
+) -> list[ConnectedBody]:
+    """The bodies of a slave that are not its master's too."""
+    both = zip(groups, sides, strict=True)
+    return [group for group, (slave, *masters) in both if slave and not any(masters)]
+
+
+def _watched(one: Contact, bodies: Sequence[ConnectedBody]) -> list[_Watched]:
+    """Those bodies of a slave; its points alone if there are none."""
+    found = [_body(one, body) for body in bodies]
     nodes, places = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     return found or [_Watched(one, None, nodes, places, nodes, places)]
 

@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.solver.terms.free_modes import ConnectedBody
+from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 from anisocontact.solver.terms.rigid_prediction import RigidPrediction
 
 #: Share of a facet by which a body on springs that touches may move at once.
@@ -71,7 +71,7 @@ class FreeBody:
         if not self.contacts[0].space.mesh.comm.allreduce(len(slave)):
             own = [self._within(contact.nodes_of_groups[1:]) for contact in self.contacts]
         self._touchable = np.unique(np.concatenate(own))
-        of = [self.body.sides(contact) for contact in self.contacts]
+        (of,) = sides_of([self.body], self.contacts)
         self.sides = [float(one[0]) - float(any(one[1:])) for one in of]
         self.act_on(None)
 

@@ -57,7 +57,7 @@ class SupportedFrame:
         return np.asarray(np.vstack([shift, turn])[self.supported])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ConnectedBody:
     """Nodes that move together where nothing is strained: a body, or bodies that share nodes.
 
@@ -96,9 +96,30 @@ class ConnectedBody:
         """Whether one of local nodes is a node of it on any rank; collective."""
         return bool(comm.allreduce(len(np.intersect1d(nodes, self.local))))
 
-    def sides(self, contact: Contact) -> list[bool]:
-        """Whether it has nodes of the slave of a contact, and of its master; collective."""
-        return [self.has(nodes, contact.space.mesh.comm) for nodes in contact.nodes_of_groups]
+
+def sides_of(
+    bodies: Sequence[ConnectedBody], contacts: Sequence[Contact]
+) -> list[list[tuple[bool, ...]]]:
+    """Whether bodies have nodes of the slave of contacts, and of their masters; collective.
+
+    Args:
+        bodies: Bodies that share no nodes.
+        contacts: Contacts of their mesh.
+
+    Returns:
+        For each body and contact the slave first.
+    """
+    if not contacts:
+        return [[] for _ in bodies]
+    sides = [nodes for contact in contacts for nodes in contact.nodes_of_groups]
+    dofs = contacts[0].space.dofmap.index_map
+    owner = np.full(dofs.size_local + dofs.num_ghosts, len(bodies))
+    for number, body in enumerate(bodies):
+        owner[body.local] = number
+    counts = [np.bincount(owner[nodes], minlength=len(bodies) + 1)[:-1] for nodes in sides]
+    there = contacts[0].space.mesh.comm.allreduce(np.array(counts)) > 0
+    ends = np.cumsum([len(contact.nodes_of_groups) for contact in contacts])[:-1]
+    return [[tuple(own.tolist()) for own in np.split(body, ends)] for body in there.T]
 
 
 def bodies(model: Model, links: Iterable[Sequence[str]] = ()) -> list[ConnectedBody]:
@@ -148,7 +169,8 @@ def joined(
     given = [contact for contact in contacts if len(contact.groups) == 1]
     links = [contact.groups for contact in contacts if len(contact.groups) > 1]
     found = bodies(model, [*coupled, *links])
-    return [body for body in found if not any([any(body.sides(one)) for one in given])]
+    sides = sides_of(found, given)
+    return [body for body, of in zip(found, sides, strict=True) if not any(map(any, of))]
 
 
 def connected_body(

@@ -21,6 +21,7 @@ from anisocontact.solver.terms.free_modes import (
     free_modes,
     joined,
     named,
+    sides_of,
 )
 from anisocontact.solver.terms.holding import NOTHING, stiffness, unsupported, work
 
@@ -50,10 +51,12 @@ class UnsupportedBodies:
         sprung: Iterable[str],
         coupled: Sequence[Sequence[str]],
     ) -> None:
-        self._model, self._contacts, self._sprung = model, list(contacts), set(sprung)
+        self._model, self._sprung = model, set(sprung)
         self._comm, self._least = model.mesh.comm, NOTHING * scale
         self._bodies = bodies(model, coupled)
         self._joined = joined(model, contacts, coupled)
+        self._contacts = _contacts_of(self._bodies, contacts)
+        self._contacts |= _contacts_of(self._joined, contacts)
         shape = np.shape(model.space.tabulate_dof_coordinates())
         self._springs, self._joined_springs = (
             np.zeros((6 * len(group), 6 * len(group)))
@@ -90,7 +93,7 @@ class UnsupportedBodies:
         free = [free_modes(body, supported, self._comm, frames) for body in self._bodies]
         loose = self._unsupported(self._bodies, free, self._springs, load, FAR)
         for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
-            if len(modes) and self._of(body):
+            if len(modes) and self._contacts[body]:
                 own = self._springs[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
                 yield self._free(body, modes, free[i], own, frames)
 
@@ -102,7 +105,7 @@ class UnsupportedBodies:
         springs: Floats,
         frames: Sequence[SupportedFrame],
     ) -> FreeBody:
-        contacts = self._of(body)
+        contacts = self._contacts[body]
         size = min(facet_size(self._model, c.slave) for c in contacts)
         led = any([len(frame.rows(body, self._comm)) > 0 for frame in frames])
         weighed = led or bool(self._sprung & set(body.parts))
@@ -127,7 +130,7 @@ class UnsupportedBodies:
 
     def _refuse(self, body: ConnectedBody, modes: str, step: str, weak: bool) -> NoReturn:
         several = len(body.parts) > 1
-        if not self._of(body):
+        if not self._contacts[body]:
             why = "it is in no contact"
         elif several:
             why = "its parts touch nothing but each other"
@@ -144,6 +147,12 @@ class UnsupportedBodies:
         text = f"body {body.name!r} is free to move: {modes}; {why} needs a support"
         raise InputError(text, f"step {step!r}")
 
-    def _of(self, body: ConnectedBody) -> list[Contact]:
-        """Contacts of a body; collective."""
-        return [one for one in self._contacts if any(body.sides(one))]
+
+def _contacts_of(
+    bodies: Sequence[ConnectedBody], contacts: Sequence[Contact]
+) -> dict[ConnectedBody, list[Contact]]:
+    """Contacts of each of some bodies that share no nodes; collective."""
+    return {
+        body: [one for one, sides in zip(contacts, of, strict=True) if any(sides)]
+        for body, of in zip(bodies, sides_of(bodies, contacts), strict=True)
+    }
