@@ -20,8 +20,8 @@ def flown_off(
 ) -> tuple[FreeBody, float] | None:
     """A body in a flow that nothing can stop any more, and how far it has come; collective.
 
-    None of its points has anything of a master below it, and it has come farther than to where it
-    could meet one, see `farthest_way`.
+    None of its points has anything of a master below it that it may come back to, and it has come
+    farther than to where it could meet one, see `farthest_way`.
 
     Args:
         bodies: Bodies that only contact can hold.
@@ -31,7 +31,7 @@ def flown_off(
     for free in bodies:
         nodes = free.body.nodes
         way = np.linalg.norm(u[nodes] - begun[nodes], axis=1).max(initial=0.0)
-        below = any([bool(c.located().any()) for c in free.contacts])
+        below = _may_come_back(free, BEYOND * _diameter(free))
         every = free.contacts[0].space.mesh.comm.allgather((float(way), below))
         farthest = max(one for one, _ in every)
         if any(here for _, here in every):
@@ -39,6 +39,23 @@ def flown_off(
         if farthest > farthest_way(free, begun):
             return free, farthest
     return None
+
+
+def _may_come_back(free: FreeBody, far: float) -> bool:
+    """Whether there is something of a master below a point of this rank that may be met again.
+
+    Not where that has come farther away by `far` and the loads on the body point away from it: a
+    surface without end is below a body wherever it is.
+    """
+    for contact, side in zip(free.contacts, free.sides, strict=True):
+        here, now, begun = contact.located(), contact.trial, contact.accepted.response
+        if not here.any():
+            continue
+        before = begun.gap[contact.master.located(begun.state)].min(initial=np.inf)
+        nearer = now.gap[here] <= before + far
+        if (nearer | (side * (now.normal[here] @ free.force) <= 0.0)).any():
+            return True
+    return False
 
 
 def farthest_way(free: FreeBody, begun: Floats) -> float:
@@ -52,14 +69,20 @@ def farthest_way(free: FreeBody, begun: Floats) -> float:
     """
     comm = free.contacts[0].space.mesh.comm
     x = free.contacts[0].space.tabulate_dof_coordinates()
-    low, high = _box(x[free.body.nodes], comm)
     own = _box((x + begun)[free.nodes], comm)
     ways = [
         _distance(own, _box((x + begun)[_others(contact, side)], comm))
         for contact, side in zip(free.contacts, free.sides, strict=True)
         if contact.of_two_groups  # a surface is below it wherever it is
     ]
-    return BEYOND * float(np.linalg.norm(high - low)) + max(ways, default=0.0)
+    return BEYOND * _diameter(free) + max(ways, default=0.0)
+
+
+def _diameter(free: FreeBody) -> float:
+    """Diagonal of the box around a body as it is meshed, length; collective."""
+    space = free.contacts[0].space
+    low, high = _box(space.tabulate_dof_coordinates()[free.body.nodes], space.mesh.comm)
+    return float(np.linalg.norm(high - low))
 
 
 def _others(contact: Contact, side: float) -> Locals:

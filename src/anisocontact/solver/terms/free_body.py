@@ -43,7 +43,7 @@ class FreeBody:
         sides: Of each of its contacts 1 where it is the slave, -1 where it is the master, 0 where
             it is both.
         stiffness: Of stabilisation at each of them, force/length.
-        load: Norm of the sum of all loads on it, force.
+        force: Sum of all loads on it, (3,), force.
         pushed: Loads along the motions of `left`, (j,).
         trusted: Whether contact and springs alone are to hold it in this attempt.
     """
@@ -60,7 +60,7 @@ class FreeBody:
     sides: list[float] = field(init=False)
     _touchable: Ints = field(init=False)
     stiffness: float = 0.0
-    load: float = 0.0
+    force: Floats = field(default_factory=lambda: np.zeros(3))
     pushed: Floats = field(default_factory=lambda: np.zeros(0))
     trusted: bool = False
     _prediction: RigidPrediction = field(init=False)
@@ -85,8 +85,7 @@ class FreeBody:
         """
         space = self.contacts[0].space
         self.act_on(where)
-        total = space.mesh.comm.allreduce(load[self.body.nodes].sum(axis=0))
-        self.load = float(np.linalg.norm(total))
+        self.force = space.mesh.comm.allreduce(load[self.body.nodes].sum(axis=0))
         self.pushed = self.along_free(load[self.body.nodes])
         x, nodes = space.tabulate_dof_coordinates()[self.nodes], self.nodes
         self._prediction = RigidPrediction(

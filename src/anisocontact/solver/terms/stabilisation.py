@@ -259,7 +259,7 @@ class Stabilisation(Term):
         if carried <= SHARE * at_work:
             return False
         self._count += 1
-        if self._count > MOST:
+        if self._count > MOST or self.flown_off(u) is not None:
             lost = [free for free in self._free if not free.touched()] or self._free
             raise NotHeldError(
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
@@ -365,7 +365,8 @@ class Stabilisation(Term):
         for contact in free.contacts:
             contact.add_force(force)
         carried = np.sqrt(self._comm.allreduce(float((force[free.body.nodes] ** 2).sum())))
-        if free.load > 0.0 and carried > 0.5 * free.load:
+        load = float(np.linalg.norm(free.force))
+        if load > 0.0 and carried > 0.5 * load:
             return False
         return bool(carried <= NOTHING * self._scale * free.size)
 
