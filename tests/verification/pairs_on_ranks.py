@@ -24,7 +24,8 @@ from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.results.checkpoint import (
     distribute,
     keep_checkpoint,
@@ -256,6 +257,46 @@ def _mortar_folded() -> Made:
     return problem, [Step("close", 4, ends)]
 
 
+def _mortar_crack() -> Made:
+    """A crack whose lips slide: its front, which both have, bears nothing on any process."""
+    cells, middle, front = (6, 3, 4), 2, 4
+    axes = [np.linspace(0.0, 1.0, count + 1) for count in cells]
+    x = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    below = np.arange(len(x)).reshape([len(axis) for axis in axes])
+    above, opened = below.copy(), below[:front, :, middle]
+    above[:front, :, middle] = len(x) + np.arange(opened.size).reshape(opened.shape)
+    near, far = slice(None, -1), slice(1, None)
+    halves = below[:, :, : middle + 1], above[:, :, middle:]
+    corners = [
+        [half[i, j, k].ravel() for k in (near, far) for j in (near, far) for i in (near, far)]
+        for half in halves
+    ]
+    rows = np.concatenate([np.stack(half, axis=1) for half in corners])
+    sides = rows[:, CELL_FACETS["hexahedron"]].reshape(-1, 4)
+    named = {
+        "c.lower": (0, below[: front + 1, :, middle]),
+        "c.upper": (1, above[: front + 1, :, middle]),
+        "c.bottom": (0, below[..., 0]),
+        "c.top": (1, above[..., -1]),
+    }
+    of_half = np.split(sides, 2)
+    facets = {
+        name: of_half[half][np.isin(of_half[half], nodes).all(axis=1)]
+        for name, (half, nodes) in named.items()
+    }
+    lip = x[opened.ravel()]
+    lip[:, 2] += 2e-3 * (axes[0][front] - lip[:, 0])
+    points, body = np.concatenate([x, lip]), {"c": np.arange(len(rows))}
+    model = Model.from_arrays(MeshArrays("hexahedron", 1, points, rows, body, facets, 1))
+    pair = Contact(model, "c.upper", "c.lower", _law(), mortar=True)
+    problem = Problem(model, {"c": make_material("linear-elastic", E=8.0, nu=0.3)}, [pair])
+    held = {"c.bottom": dict.fromkeys("xyz", 0.0)}
+    return problem, [
+        Step("press", 2, held | {"c.top": {"z": -0.02}}),
+        Step("slide", 2, held | {"c.top": {"x": 0.05, "y": 0.01, "z": -0.02}}),
+    ]
+
+
 CASES: dict[str, Callable[[], Made]] = {
     "single": _single,
     "in-python": _in_python,
@@ -271,6 +312,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "mortar-second-order": _mortar_second_order,
     "mortar-far": _mortar_far,
     "mortar-folded": _mortar_folded,
+    "mortar-crack": _mortar_crack,
     "mortar-following": _mortar_following,
     "mortar-plane": _mortar_plane,
     "mortar-iterative": _mortar,

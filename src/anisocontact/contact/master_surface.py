@@ -13,7 +13,13 @@ from anisocontact.contact.beyond_cuts import BeyondCuts
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.images import Images
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.contact.remote_nodes import NONE, RemoteNodes, node_count, owned_among
+from anisocontact.contact.remote_nodes import (
+    NONE,
+    RemoteNodes,
+    globally,
+    node_count,
+    owned_among,
+)
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.connected_components import component_of_nodes
 from anisocontact.mesh.split import Route, Split, arranged
@@ -248,6 +254,13 @@ class MasterSurface:
         if self._images is not None:
             return self._images.named(nodes)
         return self._far.coupled(nodes)
+
+    def in_mesh(self, nodes: Locals) -> Ints:
+        """Numbers in the whole mesh of nodes numbered as `reference`, -1 for none."""
+        there = nodes >= 0
+        numbers = np.full(nodes.shape, -1, dtype=np.int64)
+        numbers[there] = globally(self.coupled(nodes[there]), self._space)
+        return numbers
 
     def moved(self, u: Floats) -> Floats:
         """Displacements of the nodes as they are numbered here, from those of the mesh."""
