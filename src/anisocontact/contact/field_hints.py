@@ -44,7 +44,7 @@ def _on_axes(contacts: Sequence[Contact]) -> list[str]:
     """
     found = []
     for contact in contacts:
-        if contact.model.idealisation.dim == 2:
+        if contact.model.idealisation.turn.any():
             continue
         fields = [one.field.named[1] for one in contact.interface.carried if one.field is not None]
         for axis in dict.fromkeys(tuple(values["axis"]) for values in fields if "axis" in values):
