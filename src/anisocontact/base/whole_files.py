@@ -38,10 +38,14 @@ def named_by_user(path: Path, field: str = "") -> Iterator[None]:
 def replacing(path: Path) -> Iterator[Path]:
     """A path to write to; it takes the place of `path` when the block ends well.
 
-    Readers see the old file or the new one, never a part of either.
+    Readers see the old file or the new one, never a part of either. Errors of the operating system
+    name the file: of a disk that is full it names none.
 
     Yields:
         The path to write to, in the same folder.
+
+    Raises:
+        OSError: It cannot be written.
 
     Example:
         >>> from tempfile import TemporaryDirectory
@@ -52,6 +56,9 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         yield draft
         draft.replace(path)
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
     finally:
         draft.unlink(missing_ok=True)
 
