@@ -12,7 +12,7 @@ import pty
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -124,18 +124,30 @@ def test_signals_before_the_run(case: Path, name: str) -> None:
     assert not (case.parent / "out").exists()
 
 
+@pytest.fixture
+def hang_up() -> Iterator[None]:
+    """A signal of a terminal that is closed ends the process, also where `nohup` has started it."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("hang_up")
 def test_signals_while_modules_are_loaded() -> None:
-    """They are answered afterwards, once each: an exception there would end the process in C++."""
+    """They are answered afterwards, once each: an exception there would end the process in C++.
+
+    Signals come to this thread: of one to the process another thread may take notice, later.
+    """
     taken: list[int] = []
     with on_signals(taken.append):
         with held_back() as answer:
-            os.kill(os.getpid(), signal.SIGTERM)
+            signal.raise_signal(signal.SIGTERM)
             with held_back():
-                os.kill(os.getpid(), signal.SIGINT)
+                signal.raise_signal(signal.SIGINT)
             assert taken == []
             answer()
             assert sorted(taken) == [signal.SIGINT, signal.SIGTERM]
-            os.kill(os.getpid(), signal.SIGHUP)
+            signal.raise_signal(signal.SIGHUP)
             assert taken[2:] == [signal.SIGHUP]
         assert len(taken) == 3
     code = (
@@ -153,8 +165,8 @@ def test_what_nohup_ignores_stays_ignored() -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         with on_signals(taken.append):
-            os.kill(os.getpid(), signal.SIGHUP)
-            os.kill(os.getpid(), signal.SIGTERM)
+            signal.raise_signal(signal.SIGHUP)
+            signal.raise_signal(signal.SIGTERM)
         assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
