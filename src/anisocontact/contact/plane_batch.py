@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TypedDict
+from typing import TypedDict, cast
 
 import numpy as np
 
@@ -60,10 +60,10 @@ class _Triangles(TypedDict):
 
 @lru_cache(maxsize=8)
 def _triangles(n: int) -> _Triangles:
-    """What is the same of so many slave nodes wherever they are."""
+    """What is the same of so many slave nodes wherever they are, for all contacts: read only."""
     first = NODES * np.arange(n, dtype=np.int32)[:, None]
     three = np.arange(3, dtype=np.int32)
-    return {
+    found: _Triangles = {
         "slave_nodes": first + three,
         "slave_shape": np.tile([1.0, 0.0, 0.0], (n, 1)),
         "slave_gradient": np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (n, 1, 1)),
@@ -74,6 +74,9 @@ def _triangles(n: int) -> _Triangles:
         "facet": np.arange(n, dtype=np.int32),
         "edge": np.zeros((n, 2)),
     }
+    for one in found.values():
+        cast(np.ndarray, one).setflags(write=False)
+    return found
 
 
 def _reference_nodes(at: MortarState) -> Floats:

@@ -201,7 +201,7 @@ def one_point(batch: Mapping[str, Any], i: int, state: State) -> tuple[FacetBatc
         i: The point.
         state: Of all points, (n,).
     """
-    own, here = state[i : i + 1].copy(), {k: batch[k][i : i + 1] for k in _OF_POINTS}
+    own, here = state[i : i + 1].copy(), {k: batch[k][i : i + 1].copy() for k in _OF_POINTS}
     if not len(here["held"]):
         here["held"] = np.zeros((1, 3, 3))
     known = np.unique([f for f in (here["facet"][0], own["facet"][0]) if f >= 0])
