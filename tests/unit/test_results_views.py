@@ -263,6 +263,20 @@ def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     np.testing.assert_allclose(shown["size"], across, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("kind", "cancel"), [("axisymmetric", True), ("plane-strain", False)])
+def test_moments_that_cancel_are_zero(tmp_path, kind, cancel):
+    """Around an axis the torque is left, on the contact and on the rigid surface that it meets."""
+    case = tmp_path / "case.toml"
+    rigid = "[rigid.floor]\nreference = [0, 0, 0]\n[[contact]]"
+    case.write_text(AROUND.replace("KIND", kind).replace("[[contact]]", rigid))
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    run = RunData(tmp_path / "out")
+    for what in ("contacts.0.moment", "rigid.floor.moment", "rigid.floor.support_moment"):
+        about_x, torque, about_z = np.abs(run.vectors(what)[-1])
+        assert torque > 0.1
+        assert ((about_x, about_z) == (0.0, 0.0)) == cancel
+
+
 def test_what_cancels_is_drawn_as_nothing(tmp_path):
     """A disc pressed without friction: the tangential force is rounding, and no curve shows it."""
     case = tmp_path / "case.toml"

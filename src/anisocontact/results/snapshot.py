@@ -75,9 +75,11 @@ class Observer:
             for g, shares in self._watched.items()
         }
         bodies = self._problem.rigid
+        whole = np.array([1.0, 1.0, 1.0, *self._problem.model.idealisation.moments])
         rigid = {
             body.name: numbers(
-                RIGID, _RigidNow(body, bodies.contact_force(body), bodies.support(body))
+                RIGID,
+                _RigidNow(body, whole * bodies.contact_force(body), whole * bodies.support(body)),
             )
             for body in bodies.bodies
         }
@@ -108,7 +110,8 @@ class _RigidNow:
 
     Args:
         body: The body.
-        force: Force and moment of the contacts about its reference point of now, (6,).
+        force: Force and moment of the contacts about its reference point of now, (6,); moments that
+            cancel over the whole body are 0.
         support: What holds its prescribed components, (6,).
     """
 
