@@ -168,6 +168,16 @@ def test_an_ellipse_too_thin_is_told(tmp_path, capsys, coefficients, said):
     assert ("0.3 and 1e-05, have a ratio of 3e-05: below" in capsys.readouterr().out) is said
 
 
+@pytest.mark.parametrize(("coefficient", "said"), [("1e6", True), ("200", False)])
+def test_friction_that_stands_for_no_slip_is_told(tmp_path, capsys, coefficient, said):
+    """Where points open it cannot be followed, see `ROUGH`: 200 does what is meant."""
+    text = BLOCK.replace("coefficients = 0", f"coefficients = {coefficient}")
+    case = tmp_path / "case.toml"
+    case.write_text(text.format(gap=0.0, penalty=1e4, way=-0.006))
+    assert main(["check", str(case)]) == 0
+    assert ("friction of 1e+06 lets points slip only where" in capsys.readouterr().out) is said
+
+
 @pytest.mark.parametrize("gap", [0.0, 0.5])
 def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     """Springs in series, E/L and eps: the penetration is 1/(1 + eps L/E) of the approach.
