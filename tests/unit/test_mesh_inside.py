@@ -22,7 +22,9 @@ def deck(tmp_path, surface: str, upper: str = UPPER, part: bool = False):
     lines += [f"7, {upper}", "*SURFACE, NAME=SOLE", *surface.split("; ")]
     if part:
         lines = ["*PART, NAME=P", *lines, "*SOLID SECTION, ELSET=ALL, MATERIAL=M", "*END PART"]
-        lines += ["*ASSEMBLY", "*INSTANCE, NAME=A, PART=P", "*END INSTANCE"]
+        # a node of the assembly: numbers of the instances begin behind it
+        lines += ["*ASSEMBLY", "*NODE", "20, 50., 0., 0."]
+        lines += ["*INSTANCE, NAME=A, PART=P", "*END INSTANCE"]
         lines += ["*INSTANCE, NAME=B, PART=P", "9., 0., 0.", "*END INSTANCE", "*END ASSEMBLY"]
     path = tmp_path / "pile.inp"
     path.write_text("\n".join(lines) + "\n")

@@ -9,6 +9,7 @@ differences, whose best step leaves 1e-7 or so of the largest entry.
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from anisocontact.interface.failed_point import read_failed_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
+from anisocontact.solver.stepping.convergence_diagnostics import failed_point
 from anisocontact.surfaces import make_surface
 
 ALONG = make_directions("constant", vector=(1.0, 0.2, 0.0), angle=0.4)
@@ -126,6 +128,25 @@ def test_the_first_point_by_its_place_is_kept(make: Any) -> None:
         failure[some] = 1
         first = np.lexsort(np.round(contact.current.points[some], 8).T[::-1])[0]
         assert contact.failed_point().point == np.arange(len(failure))[some][first]
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_the_first_point_of_all_processes_is_kept(rank: int) -> None:
+    """Requirement: of points on two processes the first by its place, on the process that has it.
+
+    The process with the lower number has the one that is farther along x.
+    """
+    places = np.array([[2.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    told = [(number, *place) for number, place in enumerate(places.tolist())]
+    contact = SimpleNamespace(
+        failed_point=lambda: SimpleNamespace(point=0),
+        current=SimpleNamespace(points=places[rank:]),
+    )
+    beside = SimpleNamespace(failed_point=lambda: None)
+    answers = iter([[None, None], told])
+    comm = SimpleNamespace(rank=rank, allgather=lambda own: next(answers))
+    found = failed_point(SimpleNamespace(comm=comm, contacts=[beside, contact]))
+    assert (found is not None) == (rank == 1)
 
 
 def test_a_run_keeps_the_point_and_the_command_replays_it(

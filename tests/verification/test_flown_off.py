@@ -24,8 +24,12 @@ def _thrown_up(
     way: float,
     load: float = -10.0,
     flows: bool = True,
+    axis: int = 2,
 ) -> Vec:
-    """All unknowns with the block as far up, in a flow or not, where nothing else has moved."""
+    """All unknowns with the block as far up, in a flow or not, where nothing else has moved.
+
+    Along another axis if that is given.
+    """
     problem.begin(Step("press", 1, held, {"block.top": {"z": load}}))
     problem.set_load_factor(1.0, 1.0)
     if flows:
@@ -33,7 +37,7 @@ def _thrown_up(
     x = problem.new_vector()
     thrown = np.zeros((len(x.array_r) // 3, 3))
     (block,) = [one for one in bodies(problem.model) if one.name == "block"]
-    thrown[block.nodes, 2] = way
+    thrown[block.nodes, axis] = way
     x.array[:] = thrown.ravel()
     return x
 
@@ -86,6 +90,14 @@ def test_a_body_that_loads_pull_off_a_plane_is_given_up(flows, way, gone) -> Non
         return
     with pytest.raises(NotHeldError, match="nothing holds body 'block'") if gone else nullcontext():
         assert aid.improve(problem.nodal, 1.0)
+
+
+def test_a_body_that_slides_far_is_not_given_up() -> None:
+    """Requirement: what has gone far along a plane without end is as near to it as before, and may
+    meet it again whatever the loads of this attempt are."""
+    problem = free_block(0.1)
+    problem.evaluate_at(_thrown_up(problem, {}, 50.0, 10.0, axis=0))
+    assert problem.stabilisation.flown_off(problem.nodal) is None
 
 
 def test_a_small_body_is_given_up_by_its_own_size() -> None:
