@@ -23,6 +23,7 @@ from anisocontact.contact import Contact, NotHeldError
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
+from anisocontact.solver.terms.body_motion import BodyMotion
 from anisocontact.solver.terms.flown_off import flown_off
 from anisocontact.solver.terms.free_body import FreeBody, closed_points, held_contacts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
@@ -86,20 +87,16 @@ class Stabilisation(Term):
         self.trust = Trust()
         self.notes: list[str] = []
         self.flow = ViscousFlow(model, scale)
-        self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
-        self._attached = attached
+        self._motion = BodyMotion(contacts, attached, self._comm)
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
         self._before: dict[int, tuple[Flags, Floats]] = {}
         self._fell = self._driven = False
         self._where: Flags | None = None
-        self._held: list[Supported] = []
-        self._frames: list[SupportedFrame] = []
-        self._begun: Floats = np.zeros((0, 3))
-        self._anchor: Floats = self._begun
+        self._anchor: Floats = self._motion.begun
         self._spent = 0.0
         self._count = 0
 
@@ -172,7 +169,7 @@ class Stabilisation(Term):
             InputError: A body is free and nothing can hold it.
         """
         self.clear()
-        self._held, self._frames = list(supported), list(frames)
+        self._motion.held, self._motion.frames = list(supported), list(frames)
         for free in self._unsupported.found(supported, step, load, frames):
             self._add(free, step, now)
 
@@ -188,7 +185,7 @@ class Stabilisation(Term):
             u: Accepted displacement of the local nodes, (nodes, 3), length.
             load: Forces on the nodes this rank owns, (owned, 3).
         """
-        self._begun = self._anchor = u.copy()
+        self._motion.begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
         self._carried = np.zeros_like(u)
         self._before = {
@@ -325,10 +322,10 @@ class Stabilisation(Term):
         Args:
             u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
         """
-        explained = self._prescribed(u) if any(f.trusted for f in self._free) else 0.0
+        explained = self._motion.prescribed(u) if any(f.trusted for f in self._free) else 0.0
         return any(
             [
-                not free.holds() or self._far(free, u, explained)
+                not free.holds() or self._motion.far(free, u, explained)
                 for free in self._free
                 if free.trusted
             ]
@@ -344,10 +341,10 @@ class Stabilisation(Term):
         Args:
             u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
         """
-        gone = [one for one in self._loose if not self.enabled or self._far(one, u)]
+        gone = [one for one in self._loose if not self.enabled or self._motion.far(one, u)]
         if self.enabled and gone:
-            explained = self._prescribed(u)
-            gone = [one for one in gone if self._far(one, u, explained)]
+            explained = self._motion.prescribed(u)
+            gone = [one for one in gone if self._motion.far(one, u, explained)]
         gone = [one for one in gone if self._carries_nothing(one, u)]
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
 
@@ -357,7 +354,7 @@ class Stabilisation(Term):
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
         """
-        return flown_off(self._loose, self._begun, u)
+        return flown_off(self._loose, self._motion.begun, u)
 
     def _carries_nothing(self, free: FreeBody, u: Floats) -> bool:
         """Whether contact carries neither the loads on a body nor more than round-off."""
@@ -369,27 +366,6 @@ class Stabilisation(Term):
         if load > 0.0 and carried > 0.5 * load:
             return False
         return bool(carried <= NOTHING * self._scale * free.size)
-
-    def _far(self, free: FreeBody, u: Floats, explained: float = 0.0) -> bool:
-        nodes = free.nodes
-        way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
-        return bool(max(self._comm.allgather(float(way))) > free.size + explained)
-
-    def _prescribed(self, u: Floats) -> float:
-        """Farthest that supports, rigid bodies and springs can have moved a body, length.
-
-        Since the attempt began; springs by what their anchors have moved and by their stretch.
-        """
-        moved = u - self._begun
-        ways = [np.abs((moved[n] * e).sum(axis=1)).max(initial=0.0) for n, e in self._held]
-        for frame in self._frames:
-            ways.append(np.abs(moved[frame.nodes]).max(initial=0.0))
-        for contact in self._contacts:
-            if contact.body is not None:
-                ways.append(contact.body.farthest(contact.current.points))
-        if self._attached is not None:
-            ways.append(self._attached.way())
-        return float(np.sqrt(3.0) * max(self._comm.allgather(float(max(ways, default=0.0)))))
 
     @override
     def accept(self, u: Floats) -> float:
