@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from anisocontact.interface import ContactLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Step
 from anisocontact.solver.system.culprit import LostError
+from anisocontact.solver.terms.flown_off import _may_come_back
 from anisocontact.solver.terms.free_modes import bodies
 
 
@@ -98,6 +100,25 @@ def test_a_body_that_slides_far_is_not_given_up() -> None:
     problem = free_block(0.1)
     problem.evaluate_at(_thrown_up(problem, {}, 50.0, 10.0, axis=0))
     assert problem.stabilisation.flown_off(problem.nodal) is None
+
+
+@pytest.mark.parametrize(("begun", "back"), [(0.0, False), (9.0, True)])
+def test_how_near_a_body_began_is_known_on_all_processes(begun: float, back: bool) -> None:
+    """Requirement: a body is given up in the same place on any number of processes.
+
+    Here another process has all points that had a master below them at the start, at a gap.
+    """
+    comm = SimpleNamespace(allgather=lambda own: [own, [begun]])
+    none, here = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
+    contact = SimpleNamespace(
+        space=SimpleNamespace(mesh=SimpleNamespace(comm=comm)),
+        accepted=SimpleNamespace(response=SimpleNamespace(gap=np.zeros(2), state=None)),
+        master=SimpleNamespace(located=lambda _: none),
+        trial=SimpleNamespace(gap=np.full(2, 10.0), normal=np.array([[0.0, 0.0, 1.0]] * 2)),
+        located=lambda: here,
+    )
+    free = SimpleNamespace(contacts=[contact], sides=[1.0], force=np.array([0.0, 0.0, 1.0]))
+    assert _may_come_back(free, 3.0) == back
 
 
 def test_a_small_body_is_given_up_by_its_own_size() -> None:

@@ -26,7 +26,7 @@ DEFAULTS: dict[str, OptionValue] = {
     # quadratic backtracking says nothing, and takes a tenth.
     "snes_linesearch_type": "bt",
     "snes_linesearch_order": 1,
-    # where a dozen of halvings gain nothing no equilibrium was ever found later on
+    # where a dozen halvings gain nothing no equilibrium was ever found later on
     "snes_linesearch_minlambda": 2.0**-12,
     "ksp_type": "preonly",
     "pc_type": "lu",

@@ -45,17 +45,26 @@ def _may_come_back(free: FreeBody, far: float) -> bool:
     """Whether there is something of a master below a point of this rank that may be met again.
 
     Not where that has come farther away by `far` and the loads on the body point away from it: a
-    surface without end is below a body wherever it is.
+    surface without end is below a body wherever it is. Collective.
     """
-    for contact, side in zip(free.contacts, free.sides, strict=True):
-        here, now, begun = contact.located(), contact.trial, contact.accepted.response
+    gaps = _least_gaps(free)
+    for contact, side, before in zip(free.contacts, free.sides, gaps, strict=True):
+        here, now = contact.located(), contact.trial
         if not here.any():
             continue
-        before = begun.gap[contact.master.located(begun.state)].min(initial=np.inf)
         nearer = now.gap[here] <= before + far
         if (nearer | (side * (now.normal[here] @ free.force) <= 0.0)).any():
             return True
     return False
+
+
+def _least_gaps(free: FreeBody) -> list[float]:
+    """Least gap of each contact of a body in the accepted state, length; collective."""
+    begun = [contact.accepted.response for contact in free.contacts]
+    there = [c.master.located(one.state) for c, one in zip(free.contacts, begun, strict=True)]
+    own = [one.gap[at].min(initial=np.inf) for one, at in zip(begun, there, strict=True)]
+    gaps: list[float] = np.min(free.contacts[0].space.mesh.comm.allgather(own), axis=0).tolist()
+    return gaps
 
 
 def farthest_way(free: FreeBody, begun: Floats) -> float:
