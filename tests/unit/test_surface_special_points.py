@@ -219,3 +219,9 @@ def test_path_over_the_pole() -> None:
 def test_wrong_parameters(shape: str, parameters: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         make_surface(shape, **parameters)
+
+
+@pytest.mark.parametrize("centre", [(3e3, 4e3, 0.0), (0.0, -3e3, 4e3), (5e3, 0.0, 0.0)])
+def test_lengths_of_a_surface_are_those_of_the_turned_one(centre):
+    """What its points are rounded to is a share of them: 5000 to the centre, and the radius."""
+    assert make_surface("sphere", centre=centre, radius=1e4).extent == pytest.approx(1.5e4)

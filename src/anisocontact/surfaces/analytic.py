@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
@@ -199,6 +201,8 @@ class Surface(CopiedByArguments):
     def extent(self) -> float:
         """Largest lengths that it is made of, length: its points are rounded to a share of them.
 
+        The same however it is turned about the origin.
+
         Example:
             >>> make_surface("sphere", centre=(0, 0, -1e4), radius=1e4).extent
             20000.0
@@ -207,7 +211,13 @@ class Surface(CopiedByArguments):
         lengths = (
             p for p in registry.entry(registry.surfaces(), name).parameters if p.unit == "length"
         )
-        return sum(max((abs(v) for v in values[p.name]), default=0.0) for p in lengths)
+        return sum(_largest(values[p.name]) for p in lengths)
+
+
+def _largest(values: Sequence[float]) -> float:
+    """Largest of some lengths, or of the distances of some points from the origin."""
+    rows = np.reshape(values, (-1, 3 if len(values) % 3 == 0 else 1))
+    return float(np.linalg.norm(rows, axis=1).max(initial=0.0))
 
 
 @typed
