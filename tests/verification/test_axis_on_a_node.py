@@ -17,6 +17,7 @@ from anisocontact.mesh import (
     Axisymmetric,
     Body,
     BoxSpec,
+    PlaneStrain,
     build_box,
     build_mesh,
     make_shape,
@@ -98,6 +99,20 @@ def test_a_body_of_revolution_anywhere_on_its_axis(meshed):
             pass
         found.append(np.concatenate(contact.resultant((0.0, low, 0.0))))
     assert found[1] == pytest.approx(found[0], abs=1e-8 * np.abs(found[0]).max())
+
+
+def test_a_node_on_the_axis_is_told_in_plane_strain():
+    """Requirement: what slips there has no direction; only on an axis of revolution it rests."""
+    shapes = {"block": ((0, 0), (1, 1), (4, 4)), "base": ((-0.5, -1), (2, 1), (7, 3))}
+    bodies = [
+        Body(name, make_shape("rectangle", origin=low, size=size, cells=cells))
+        for name, (low, size, cells) in shapes.items()
+    ]
+    model = build_mesh(bodies, idealisation=PlaneStrain(lateral=True))
+    directions = make_directions("polar", axis=((0, 0, 0), (0, 1, 0)))
+    friction = Friction(coefficients=MU, directions=directions)
+    (told,) = doubtful_fields([Contact(model, "block.bottom", "base.top", friction)])
+    assert "slave points with 0.12 of its area lie on the axis of a direction field" in told
 
 
 @pytest.mark.parametrize("cells", [2, 4, 8])

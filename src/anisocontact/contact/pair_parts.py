@@ -32,7 +32,7 @@ from anisocontact.contact.slave_nodes import (
     nodes_of_facets,
 )
 from anisocontact.contact.sweep import Sweep
-from anisocontact.contact.symmetric import check_directions, check_symmetry
+from anisocontact.contact.symmetric import check_symmetry
 from anisocontact.contact.whole_facets import around_own_nodes
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.mesh import Model
@@ -265,7 +265,6 @@ def _on_facets(
     sides = make_sides(model, (slave, master), options, nodes, beyond)
     met = model.positions[model.facet_nodes(master)]
     x = np.concatenate([(nodes or sides.points).quadrature.reference, met])
-    check_directions(model.idealisation, law, nodes or sides.points, model.mesh.comm)
     law = off_axes(law, x, facet_size(model, slave), model.mesh.comm, model.idealisation)
     # the masters of two bodies, which contact with a surface does without
     if nodes is not None:

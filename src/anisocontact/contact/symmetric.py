@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,9 +9,9 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact.integration_points import IntegrationPoints
-from anisocontact.interface import ContactLaw, Interface, SlaveSurface
+from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.mesh.idealisation import Idealisation
-from anisocontact.surfaces import PROJECTION_STATUS, make_surface
+from anisocontact.surfaces import PROJECTION_STATUS
 
 #: Slip and penetration of the points that are tried, over the size of a facet.
 TRIED = 1e-4
@@ -20,10 +19,6 @@ TRIED = 1e-4
 SAME = 1e-6
 #: Where another plane is, share of the thickness or of a full turn: no fraction of small numbers.
 SHARE = 0.1379
-#: Kind of field that is given at points.
-AT_POINTS = "tabulated-points"
-#: Slave points of a process at which directions of facets are tried.
-PLANES = 12
 
 
 def check_symmetry(
@@ -47,70 +42,17 @@ def check_symmetry(
     if idealisation.dim == 3:
         return
     _check_normals(idealisation, interface, points, comm)
-
-    def tractions(reference: Floats, tangents: Floats) -> Floats:
-        return _tractions(interface, reference, tangents, points.size)
-
-    _compare(idealisation, points, tractions, "surface and directions are", comm)
-
-
-def check_directions(
-    idealisation: Idealisation, law: ContactLaw, points: IntegrationPoints, comm: Any
-) -> None:
-    """The same of laws between facets, which are tried on planes along the slave; collective.
-
-    Directions that are given at points are those of the plane that is drawn, and are not looked at.
-
-    Args:
-        idealisation: What the mesh is taken for.
-        law: The laws.
-        points: The slave points.
-        comm: Communicator of the mesh.
-
-    Raises:
-        InputError: The tractions differ.
-    """
-    given = {one.field.name for one in law.carried if one.field is not None}
-    if idealisation.dim == 3 or AT_POINTS in given:
-        return
-
-    def tractions(reference: Floats, tangents: Floats) -> Floats:
-        found = np.zeros_like(reference)
-        for i in np.unique(np.linspace(0, max(len(found) - 1, 0), PLANES).astype(int))[
-            : len(found)
-        ]:
-            one = slice(i, i + 1)
-            normal = np.cross(*tangents[i])
-            plane = make_surface("plane", point=reference[i], normal=normal)
-            found[one] = _tractions(
-                Interface(plane, law), reference[one], tangents[one], points.size
-            )
-        return found
-
-    _compare(idealisation, points, tractions, "directions are", comm)
-
-
-def _compare(
-    idealisation: Idealisation,
-    points: IntegrationPoints,
-    tractions: Callable[[Floats, Floats], Floats],
-    what: str,
-    comm: Any,
-) -> None:
-    """Compare tractions at slave points, by places and tangents, with those in another plane.
-
-    Raises:
-        InputError: They differ.
-    """
-    x, tangents = points.quadrature.reference, points.quadrature.tangents.reshape(-1, 2, 3)
+    here = _tractions(interface, points, np.eye(3), np.zeros(3))
     rotation, shift = idealisation.image(SHARE)
-    here = tractions(x, tangents)
-    there = tractions(x @ rotation.T + shift, tangents @ rotation.T)
+    there = _tractions(interface, points, rotation, shift)
     off = np.abs(there - here @ rotation.T).max(initial=0.0)
     off, size = np.max(comm.allgather([off, np.abs(here).max(initial=0.0)]), axis=0)
     if not off <= SAME * size:
         kind = "of revolution about the axis x = 0" if idealisation.turn.any() else "along z"
-        text = f"{what} not the same {kind}: tractions differ by {off / size:.2g} of the largest"
+        text = (
+            f"surface and directions are not the same {kind}: tractions differ by "
+            f"{off / size:.2g} of the largest"
+        )
         raise InputError(text, "master")
 
 
@@ -132,14 +74,19 @@ def _check_normals(
         raise InputError(f"{text}, in which it has to be a line", "master")
 
 
-def _tractions(interface: Interface, reference: Floats, tangents: Floats, size: float) -> Floats:
+def _tractions(
+    interface: Interface, points: IntegrationPoints, rotation: Floats, shift: Floats
+) -> Floats:
     """Tractions after a small slip, (n, 3); zero where there is no point of the surface below."""
+    quadrature = points.quadrature
+    reference = quadrature.reference @ rotation.T + shift
+    tangents = quadrature.tangents.reshape(-1, 2, 3) @ rotation.T
     hit = interface.surface.project(reference)
     below = hit.status == PROJECTION_STATUS.index("interior")
     normal = np.where(below[:, None], hit.dgap_dx, 0.0)
     foot = reference - hit.gap[:, None] * normal
     unit = tangents / np.linalg.norm(tangents, axis=2)[..., None]
-    way = TRIED * size * (0.6 * unit[:, 0] + 0.8 * unit[:, 1] - normal)
+    way = TRIED * points.size * (0.6 * unit[:, 0] + 0.8 * unit[:, 1] - normal)
     seen = SlaveSurface(reference, tangents, tangents) if interface.takes_slave() else None
     found = interface.update(interface.initial_state(foot), foot + way, slave=seen).traction
     return np.where(below[:, None], np.nan_to_num(found), 0.0)
