@@ -42,7 +42,7 @@ RULES: dict[str, dict[str, object]] = {
 }
 #: Control points of x and of x^2 on a Bezier curve of degree 2 over [-1, 1].
 PARABOLA = ((-1.0, 1.0), (0.0, -1.0), (1.0, 1.0))
-# Surfaces that touch the plane z = 0 from below at the origin, but for the torus.
+# Surfaces that touch the plane z = 0 from below at the origin, but for the ring and the thread.
 SURFACES: dict[str, dict[str, object]] = {
     "plane": {"point": (0, 0, 0), "normal": (0, 0, 1)},
     "cylinder": {"point": (0, 0, -2), "axis": (0, 1, 0), "radius": 2.0},
@@ -51,12 +51,18 @@ SURFACES: dict[str, dict[str, object]] = {
     "torus": {"centre": (0, 0, -0.5), "axis": (0, 0, 1), "radius": 1.5, "tube": 0.5},
     "ellipsoid": {"centre": (0, 0, -1), "semi_axes": (3, 2, 1), "axis": (1, 0, 0)},
     "helicoid": {
-        "point": (-1.5, 0, -2.5),
+        "point": (-1.5, 0, 1.25),
         "axis": (0, 0, 1),
         "lead": 5.0,
         "inner": 1.0,
         "outer": 2.0,
         "start": (0, 1, 0),
+    },
+    "revolution": {
+        "point": (0, 0, -2),
+        "axis": (0, 1, 0),
+        "profile": (1.8, 1.0, 2.0, 0.0, 1.8, -1.0),
+        "spline": True,
     },
     "nurbs": {
         "degrees": (2, 2),

@@ -6,6 +6,8 @@ from types import ModuleType
 
 import pytest
 
+from anisocontact.base import registry
+
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 DAT = """
  total force (fx,fy,fz) for set TOP and time  0.2000000E+00
@@ -229,3 +231,13 @@ def test_outcomes_are_kept_and_the_page_is_made_from_them(benchmarks, tmp_path):
     assert (
         tmp_path / "faults.md.in"
     ).read_text() == "- `one`, penalty, iterative: stopped: stuck\n"
+
+
+def test_rates_of_the_kernel_are_of_every_surface_and_rule(benchmarks, monkeypatch):
+    rates = benchmarks("kernel_rates")
+    monkeypatch.setattr(rates, "POINTS", 500)
+    monkeypatch.setattr(rates, "PASSES", 1)
+    assert {e.name for e in registry.sliding_rules()} == set(rates.RULES)
+    assert {e.name for e in registry.surfaces()} == set(rates.SURFACES)
+    # each says that its points slide, of which it is the rate
+    assert len(rates.updates()) == len(rates.RULES) + len(rates.SURFACES) - 1
