@@ -111,8 +111,9 @@ def test_a_node_on_the_axis_is_told_in_plane_strain():
     model = build_mesh(bodies, idealisation=PlaneStrain(lateral=True))
     directions = make_directions("polar", axis=((0, 0, 0), (0, 1, 0)))
     friction = Friction(coefficients=MU, directions=directions)
-    (told,) = doubtful_fields([Contact(model, "block.bottom", "base.top", friction)])
+    told, another = doubtful_fields([Contact(model, "block.bottom", "base.top", friction)])
     assert "slave points with 0.12 of its area lie on the axis of a direction field" in told
+    assert "directions are not the same along z" in another
 
 
 @pytest.mark.parametrize("cells", [2, 4, 8])

@@ -10,12 +10,15 @@ from anisocontact.base.array_types import Floats
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.contact.field_axes import OFF, distances
+from anisocontact.contact.symmetric import alike, apart_in_another_plane
 
 #: Share of the area of a slave whose friction has an arbitrary direction that is worth a word.
 UNCERTAIN = 1e-3
 #: Angle between a slave and the helicoid of a spiral, radian, up to which facets say how it runs:
 #: half of the angle between facets of which there are 32 around.
 GRAZING = 0.1
+#: Difference of tractions in another plane, over the largest, that is worth a word.
+ELSEWHERE = 0.01
 
 
 def doubtful_fields(contacts: Sequence[Contact]) -> list[str]:
@@ -27,7 +30,7 @@ def doubtful_fields(contacts: Sequence[Contact]) -> list[str]:
     Returns:
         A line for each contact and field.
     """
-    return [*_on_axes(contacts), *_along_helicoids(contacts)]
+    return [*_on_axes(contacts), *_along_helicoids(contacts), *_of_one_plane(contacts)]
 
 
 def _on_axes(contacts: Sequence[Contact]) -> list[str]:
@@ -98,6 +101,32 @@ def _along_helicoids(contacts: Sequence[Contact]) -> list[str]:
                     "every line there has that pitch, and facets say which one is taken; "
                     'kind = "polar" has lines across the thread (first axis) and along it (second)'
                 )
+    return found
+
+
+def _of_one_plane(contacts: Sequence[Contact]) -> list[str]:
+    """Contacts of two meshes in the plane whose directions differ from plane to plane; collective.
+
+    Rigid surfaces of that kind are refused, see `check_symmetry`.
+
+    Args:
+        contacts: The contacts.
+
+    Returns:
+        A line for each contact.
+    """
+    found = []
+    for contact in contacts:
+        ideal, points = contact.model.idealisation, contact.slave_points
+        if len(contact.groups) == 1:
+            continue
+        off = apart_in_another_plane(ideal, contact.interface, points, contact.space.mesh.comm)
+        if off > ELSEWHERE:
+            found.append(
+                f"contact of {' with '.join(contact.groups)}: directions are not the same "
+                f"{alike(ideal)}, tractions elsewhere differ by {off:.2g} of the largest: those "
+                "of the plane that is drawn are taken everywhere"
+            )
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,9 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact.integration_points import IntegrationPoints
-from anisocontact.interface import Interface, SlaveSurface
+from anisocontact.interface import ContactLaw, Interface, SlaveSurface
 from anisocontact.mesh.idealisation import Idealisation
-from anisocontact.surfaces import PROJECTION_STATUS
+from anisocontact.surfaces import PROJECTION_STATUS, make_surface
 
 #: Slip and penetration of the points that are tried, over the size of a facet.
 TRIED = 1e-4
@@ -19,6 +20,13 @@ TRIED = 1e-4
 SAME = 1e-6
 #: Where another plane is, share of the thickness or of a full turn: no fraction of small numbers.
 SHARE = 0.1379
+#: Kind of field that is given at points.
+AT_POINTS = "tabulated-points"
+#: Distance from the axis of revolution up to which directions are those of an axis beside it, over
+#: the size of a facet.
+AXIS = 0.1
+#: At least so many slave points of a process, of those there are, are tried on planes.
+PLANES = 12
 
 
 def check_symmetry(
@@ -42,18 +50,74 @@ def check_symmetry(
     if idealisation.dim == 3:
         return
     _check_normals(idealisation, interface, points, comm)
-    here = _tractions(interface, points, np.eye(3), np.zeros(3))
-    rotation, shift = idealisation.image(SHARE)
-    there = _tractions(interface, points, rotation, shift)
-    off = np.abs(there - here @ rotation.T).max(initial=0.0)
-    off, size = np.max(comm.allgather([off, np.abs(here).max(initial=0.0)]), axis=0)
-    if not off <= SAME * size:
-        kind = "of revolution about the axis x = 0" if idealisation.turn.any() else "along z"
+
+    def tractions(reference: Floats, tangents: Floats) -> Floats:
+        return _tractions(interface, reference, tangents, points.size)
+
+    off = _apart(idealisation, points, tractions, comm)
+    if off:
         text = (
-            f"surface and directions are not the same {kind}: tractions differ by "
-            f"{off / size:.2g} of the largest"
+            f"surface and directions are not the same {alike(idealisation)}: tractions differ by "
+            f"{off:.2g} of the largest"
         )
         raise InputError(text, "master")
+
+
+def alike(idealisation: Idealisation) -> str:
+    """How what a plane mesh stands for goes on out of the plane that is drawn, in words."""
+    return "of revolution about the axis x = 0" if idealisation.turn.any() else "along z"
+
+
+def apart_in_another_plane(
+    idealisation: Idealisation, law: ContactLaw, points: IntegrationPoints, comm: Any
+) -> float:
+    """How far laws between facets are from what they are in another plane; collective.
+
+    They are tried on planes along the slave. Directions that are given at points are those of the
+    plane that is drawn, and are not looked at.
+
+    Args:
+        idealisation: What the mesh is taken for.
+        law: The laws.
+        points: The slave points.
+        comm: Communicator of the mesh.
+
+    Returns:
+        Difference of tractions over the largest; 0 where it is rounding.
+    """
+    given = {one.field.name for one in law.carried if one.field is not None}
+    if idealisation.dim == 3 or not given or AT_POINTS in given:
+        return 0.0
+
+    def tractions(reference: Floats, tangents: Floats) -> Floats:
+        found = np.zeros_like(reference)
+        across = np.linalg.norm(idealisation.across(reference), axis=1)
+        whole = np.flatnonzero((across > AXIS * points.size) | (not idealisation.turn.any()))
+        for i in whole[:: max(len(whole) // PLANES, 1)]:
+            one = slice(i, i + 1)
+            normal = np.cross(*tangents[i])
+            plane = make_surface("plane", point=reference[i], normal=normal)
+            interface = Interface(plane, law)
+            found[one] = _tractions(interface, reference[one], tangents[one], points.size)
+        return found
+
+    return _apart(idealisation, points, tractions, comm)
+
+
+def _apart(
+    idealisation: Idealisation,
+    points: IntegrationPoints,
+    tractions: Callable[[Floats, Floats], Floats],
+    comm: Any,
+) -> float:
+    """Difference of tractions at slave points, by places and tangents, from another plane's."""
+    x, tangents = points.quadrature.reference, points.quadrature.tangents.reshape(-1, 2, 3)
+    rotation, shift = idealisation.image(SHARE)
+    here = tractions(x, tangents)
+    there = tractions(x @ rotation.T + shift, tangents @ rotation.T)
+    off = np.abs(there - here @ rotation.T).max(initial=0.0)
+    off, size = np.max(comm.allgather([off, np.abs(here).max(initial=0.0)]), axis=0)
+    return 0.0 if off <= SAME * size else float(off / size)
 
 
 def _check_normals(
@@ -74,19 +138,14 @@ def _check_normals(
         raise InputError(f"{text}, in which it has to be a line", "master")
 
 
-def _tractions(
-    interface: Interface, points: IntegrationPoints, rotation: Floats, shift: Floats
-) -> Floats:
+def _tractions(interface: Interface, reference: Floats, tangents: Floats, size: float) -> Floats:
     """Tractions after a small slip, (n, 3); zero where there is no point of the surface below."""
-    quadrature = points.quadrature
-    reference = quadrature.reference @ rotation.T + shift
-    tangents = quadrature.tangents.reshape(-1, 2, 3) @ rotation.T
     hit = interface.surface.project(reference)
     below = hit.status == PROJECTION_STATUS.index("interior")
     normal = np.where(below[:, None], hit.dgap_dx, 0.0)
     foot = reference - hit.gap[:, None] * normal
     unit = tangents / np.linalg.norm(tangents, axis=2)[..., None]
-    way = TRIED * points.size * (0.6 * unit[:, 0] + 0.8 * unit[:, 1] - normal)
+    way = TRIED * size * (0.6 * unit[:, 0] + 0.8 * unit[:, 1] - normal)
     seen = SlaveSurface(reference, tangents, tangents) if interface.takes_slave() else None
     found = interface.update(interface.initial_state(foot), foot + way, slave=seen).traction
     return np.where(below[:, None], np.nan_to_num(found), 0.0)
