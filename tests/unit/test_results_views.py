@@ -10,6 +10,7 @@ import pytest
 import pyvista
 from matplotlib import colormaps
 from matplotlib.image import imread
+from matplotlib.quiver import Quiver
 from matplotlib.text import Text
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
@@ -20,7 +21,7 @@ from anisocontact.interface import STATUS
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, caption, surfaces
 from anisocontact.results.report import curves, maps
-from anisocontact.results.report.frame import ContactView
+from anisocontact.results.report.frame import ContactView, axis_name
 from anisocontact.results.report.run_data import Moment, RunData
 from anisocontact.results.report.shape import Drawings
 from anisocontact.results.section_plane import SectionPlane
@@ -122,6 +123,51 @@ def _touching(places, normals, **data):
     return DataSet("PolyData", places, vertices(np.arange(count)), data)
 
 
+@pytest.mark.parametrize(
+    ("direction", "name"),
+    [
+        ((0.9999, 0.004, 0.0), "x"),
+        ((0.6, -0.8, -2.46e-5), "(0.6, -0.8, 0)"),
+        ((0.8, 0.6, -1e-20), "(0.8, 0.6, 0)"),
+        ((0.0, 0.6, 0.8), "(0, 0.6, 0.8)"),
+    ],
+)
+def test_names_of_directions_have_no_rounding(direction, name):
+    """Requirement: a label has no digits that nobody can see in the picture, as of 2.46e-05."""
+    assert axis_name(np.array(direction)) == name
+
+
+@pytest.mark.parametrize(("radius", "shown"), [(0.1, 0.16), (0.35, 0.5)])
+def test_a_small_contact_is_seen_alone(radius, shown):
+    """Points on a square of which a disc touches: of a small one the maps show a close-up.
+
+    Requirement: what touches fills more than half of the map, and so does the whole slave where
+    that is nearly as small; panels are of one shape, and more arrows than one stand in it. Source:
+    of a ball on a race nothing but a grey disc with a dot was seen. Tolerance: the spacing of the
+    points, 0.02, and the room of a facet.
+    """
+    side = np.linspace(-0.5, 0.5, 51)
+    places = np.stack(np.meshgrid(side, side, [0.0]), axis=-1).reshape(-1, 3)
+    inside = np.linalg.norm(places, axis=1) < radius
+    data = {"pressure": 1.0 * inside, "traction_principal": np.ones((len(places), 2))}
+    data |= {f"direction_friction_{i + 1}": np.tile(np.eye(3)[i], (51**2, 1)) for i in range(2)}
+    points = _touching(places, np.tile([0.0, 0.0, 1.0], (51**2, 1)), **data)
+    points.point_data["area"][:] = 0.02**2
+    points.point_data["status"][:] = inside
+    view = ContactView(points, 0)
+    moments = [Moment("drag, increment 4", 1, 1)]
+    run = SimpleNamespace(moments=moments, steps=[0], ends=lambda: moments, view=lambda *_: view)
+    run.mixed = lambda _: moments
+    for draw in (maps.pressure, maps.status, maps.traction):
+        figure = draw(run, 0)
+        axes = figure.axes[0]
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        assert right == pytest.approx(shown, abs=0.1)
+        assert (right - left, left) == pytest.approx((top - bottom, -right))
+    (quiver,) = [one for one in axes.collections if isinstance(one, Quiver)]
+    assert quiver.N > 12
+
+
 @pytest.mark.parametrize(("tilt", "name"), [(8.0, "z"), (20.0, "(0, 0.342, 0.94)")])
 def test_a_contact_that_is_nearly_level_is_seen_along_an_axis(tilt, name):
     up = np.tile([0.0, np.sin(np.radians(tilt)), np.cos(np.radians(tilt))], (10, 1))
@@ -214,7 +260,9 @@ def test_maps_name_what_is_there(codes, named):
         assert [word for word in words if word in STATUS] == named
         which = "of each step" if steps == 2 else "of each of the last 3 of 5 steps"
         assert f"{which} the state in which stick and slip are most mixed" in words
-        assert ("open" in _words(maps.pressure(run, 0))) == (0 in codes)
+        words = _words(maps.pressure(run, 0))
+        assert ("open" in words) == (0 in codes)
+        assert ("at the end of each of the last 3 of 5 steps" in words) == (steps == 5)
 
 
 AROUND = """
@@ -275,6 +323,36 @@ def test_moments_that_cancel_are_zero(tmp_path, kind, cancel):
         about_x, torque, about_z = np.abs(run.vectors(what)[-1])
         assert torque > 0.1
         assert ((about_x, about_z) == (0.0, 0.0)) == cancel
+
+
+@pytest.mark.parametrize("turn", [5.0, 0.0])
+def test_the_moment_of_what_turns_is_drawn(tmp_path, turn):
+    """A disc on a floor that turns: the report has the torque over the angle, else none.
+
+    Requirement: the curve ends at the moment of the history, about the axis of the turn as it is
+    named, over the angle in radian. Source: of a clutch the tangential force is rounding, and no
+    picture had its torque. The axis is that of the turn, so that the moment of friction, which
+    stands against it on the slave, is positive on what turns against it: it is negative here.
+    """
+    case = tmp_path / "case.toml"
+    text = AROUND.replace("KIND", "axisymmetric")
+    text = text.replace("pictures = false", "pictures = true") if turn else text
+    text = text.replace("[[contact]]", "[rigid.floor]\nreference = [0, 0, 0]\n[[contact]]")
+    text = text.replace("z = 0.001 }", f"z = 0 }}\nmotion.floor.ry_deg = {-turn}")
+    case.write_text(text)
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    run = RunData(tmp_path / "out")
+    assert list(run.turning) == (["floor"] if turn else [])
+    if not turn:
+        return
+    assert "Moment over angle" in (tmp_path / "out" / "report.html").read_text()
+    axes = curves.moment(run).axes[0]
+    angle, about = axes.lines[0].get_data()
+    torque = run.history["rigid.floor.moment.y"][-1]
+    assert (angle[0], angle[-1]) == pytest.approx((0.0, np.radians(turn)))
+    assert (about[0], about[-1]) == pytest.approx((0.0, -torque))
+    assert torque > 0.1
+    assert axes.lines[0].get_label() == "on floor about -y"
 
 
 def test_what_cancels_is_drawn_as_nothing(tmp_path):

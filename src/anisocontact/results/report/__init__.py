@@ -34,7 +34,7 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
         maps.pressure,
         "Pressure",
         "Pressure on the slave at the end of the steps, or of the last three, at the deformed "
-        "position.",
+        "position; what touches alone where that is little of the slave.",
     ),
     (
         "status",
@@ -72,6 +72,12 @@ _WITHOUT_ADHESION = (
     "The resultant tangential force over the normal force; where the axes are the same at all "
     "points it cannot leave the friction ellipse. Multipliers hold what sticks: there is no "
     "elastic slip and no adhesion domain.",
+)
+#: Heading and caption of the moments.
+_MOMENT = (
+    "Moment over angle",
+    "Moment of contacts and faces on rigid bodies that turn, about the axis of their largest turn "
+    "through their reference point; the steps are shaded.",
 )
 #: Of the bodies: heading and caption by the name of the picture.
 _OF_BODIES = {
@@ -163,6 +169,7 @@ def _draw(run: RunData, album: _Album, vtk: subprocess.Popen[bytes] | None, fork
     with shape.Drawings(source, album.folder, names, run.units, vtk) as bodies:
         count = len(run.summary["contacts"])
         contacts = [one for number in range(count) for one in _of_contact(run, number, album)]
+        contacts += _of_turning(run, album)
         drawn = attempts([one.attempt for one in contacts], forks=forks)
         # drawn meanwhile by another process, shown first
         first = [_of_bodies(run, name, album, bodies) for name in names]
@@ -201,6 +208,15 @@ def _of_contact(run: RunData, number: int, album: _Album) -> list[_Wanted]:
             of_pair = f"{name}-{number}" if many else name
             found.append(album.wanted(of_pair, f"{title}{pair}", caption, drawn))
     return found
+
+
+def _of_turning(run: RunData, album: _Album) -> list[_Wanted]:
+    """Moments, where rigid bodies turn."""
+
+    def drawn(path: Path) -> None:
+        save(labelled(curves.moment(run), run.units), path)
+
+    return [album.wanted("moment", *_MOMENT, drawn)] if run.turning else []
 
 
 def _in_a_plane(run: RunData, number: int) -> bool:

@@ -1,4 +1,4 @@
-"""Curves: force over displacement, and the path of the force against its ellipse."""
+"""Curves: force over displacement, moment over angle, path of the force against its ellipse."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
-from anisocontact.results.report.frame import ContactView, Frame
+from anisocontact.results.report.frame import ContactView, Frame, axis_name
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
@@ -60,6 +60,27 @@ def force(run: RunData, contact: int) -> Figure:
         axes.margins(x=0.0)
         axes.grid(alpha=0.3)
     _name_steps(run, upper, at)
+    return figure
+
+
+def moment(run: RunData) -> Figure:
+    """Moments on the rigid bodies that turn, over the angle of the one that turns farthest."""
+    angles = {body: run.angle(body) for body in run.turning}
+    farthest = max(angles, key=lambda body: angles[body][-1])
+    at = np.append(0.0, angles[farthest])
+    figure = new_figure(9.0, 4.5)
+    axes = figure.subplots()
+    for (body, axis), colour in zip(run.turning.items(), cycle(STEP_COLOURS)):
+        about = np.append(0.0, run.vectors(f"rigid.{body}.moment") @ axis)
+        name = f"on {plain(body)} about {axis_name(axis)}"
+        axes.plot(at, about, color=colour, label=name)
+    axes.set_ylabel("moment of contacts and faces [force length]")
+    axes.set_xlabel(f"angle that {plain(farthest)} has turned [rad]")
+    axes.legend(loc="best")
+    _shade(run, axes, at)
+    axes.margins(x=0.0)
+    axes.grid(alpha=0.3)
+    _name_steps(run, axes, at)
     return figure
 
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
 
+#: Component of a direction that its name has as 0.
+UNSEEN = 5e-4
 #: One less the cosine of the angle up to which directions are drawn as the same: 2.6 degrees.
 ALIKE = 1e-3
 #: Cosine of the angle up to which a contact is seen along an axis of space: 11 degrees.
@@ -280,4 +282,5 @@ def axis_name(axis: Floats) -> str:
     for letter, unit in zip("xyz", np.eye(3), strict=True):
         if abs(axis @ unit) > 1.0 - ALIKE:
             return letter if axis @ unit > 0.0 else f"-{letter}"
-    return f"({', '.join(f'{v:.3g}' for v in axis)})"
+    shown = np.where(np.abs(axis) < UNSEEN, 0.0, axis)
+    return f"({', '.join(f'{v:.3g}' for v in shown)})"

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
 from anisocontact.base.statuses import STATUS
 from anisocontact.results.report.along import pressure_along, traction_along
@@ -31,6 +32,11 @@ NOISE = 1e-6
 LETTERS = 34
 #: Size of a map in which panels can share their axes, over that of the points.
 ROOM = 1.5
+#: Room around what touches in a close-up, over its size; in facets where that is more.
+AROUND, FACETS = 0.3, 3.0
+#: Size of a close-up over that of the whole slave up to which it is shown alone.
+CLOSE = 0.6
+_BOTH = np.array([-1.0, 1.0])
 
 
 def pressure(run: RunData, contact: int) -> Figure:
@@ -46,9 +52,10 @@ def pressure(run: RunData, contact: int) -> Figure:
         image = view.draw_touching(
             axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
         )
+    _close_up(panels)
     _scale(figure, [p[0] for p in panels], image, panels[0][1], "pressure [stress]")
     if len(run.steps) > MOST:
-        figure.suptitle(f"{_steps(run)} its end", fontsize=10)
+        figure.suptitle(f"at the end {_steps(run)}", fontsize=10)
     _legend_of_open(figure, [view for _, view, _ in panels])
     return figure
 
@@ -60,6 +67,7 @@ def status(run: RunData, contact: int) -> Figure:
     for axes, view, moment in panels:
         view.draw(axes, view.data["status"], cmap=colours, norm=BoundaryNorm([0, 1, 2, 3], 3))
         axes.set_title(_title(moment))
+    _close_up(panels)
     figure.suptitle(f"{_steps(run)} the state in which stick and slip are most mixed", fontsize=10)
     there = np.unique(np.concatenate([view.data["status"] for _, view, _ in panels]))
     _legend(figure, [int(code) for code in there])
@@ -80,6 +88,7 @@ def traction(run: RunData, contact: int) -> Figure:
         image = view.draw_touching(axes, values[:, i], cmap="RdBu_r", vmin=-limit, vmax=limit)
         axes.set_title(f"along the {name} axis of friction")
         _arrows(axes, view, i)
+    _show(left, _window([view]))
     _scale(figure, [left, right], image, view, "tangential traction on the slave [stress]")
     figure.suptitle(f"{plain(run.moments[-1].title)}; arrows: direction of the axis")
     _legend_of_open(figure, [view])
@@ -113,6 +122,38 @@ def _panels(
             axes.set_xlim(left, right)
             axes.set_ylim(bottom, top)
     return figure, list(zip(row, views, moments, strict=True))
+
+
+def _close_up(panels: list[tuple[Axes, ContactView, Moment]]) -> None:
+    """Show what touches alone where that is little of the slave, the same in panels that share."""
+    views = [view for _, view, _ in panels]
+    shared = _in_one_place(views)
+    for axes, view, _ in panels:
+        _show(axes, _window(views if shared else [view]))
+
+
+def _window(views: list[ContactView]) -> Floats | None:
+    """Box around what touches, (2, 2); None where the whole slave is little more."""
+    if any(view.on_line for view in views) or not any(view.touching.any() for view in views):
+        return None
+    places = np.concatenate([view.flat[view.touching] for view in views])
+    low, high = places.min(axis=0), places.max(axis=0)
+    facet = max(np.sqrt(view.data["area"][view.touching].max(initial=0.0)) for view in views)
+    room = max(AROUND * (high - low).max(), FACETS * facet)
+    window = np.stack([low - room, high + room])
+    whole = max((view.box[1] - view.box[0]).max() for view in views)
+    return window if (high - low).max() + 2.0 * room < CLOSE * whole else None
+
+
+def _show(axes: Axes, window: Floats | None) -> None:
+    """Limit a map to a window, if there is one, without another shape of the panel."""
+    if window is None:
+        return
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    middle, size = window.mean(axis=0), window[1] - window[0]
+    share = max(size[0] / (right - left), size[1] / (top - bottom))
+    half = 0.5 * share * np.array([right - left, top - bottom])
+    axes.set(xlim=middle[0] + half[0] * _BOTH, ylim=middle[1] + half[1] * _BOTH)
 
 
 def _margin(view: ContactView) -> float:
@@ -159,9 +200,9 @@ def _arrows(axes: Axes, view: ContactView, which: int) -> None:
     touching = np.flatnonzero(view.touching)
     if not touching.size:
         return
-    low, high = view.flat.min(axis=0), view.flat.max(axis=0)
+    low, high = view.flat[touching].min(axis=0), view.flat[touching].max(axis=0)
     cell = (high - low).max() / 6.0
-    _, some = np.unique(((view.flat[touching] - low) // cell), axis=0, return_index=True)
+    _, some = np.unique(((view.flat[touching] - low) // (cell or 1.0)), axis=0, return_index=True)
     at = touching[some]
     arrow = view.frame.of(view.data[f"direction_friction_{which + 1}"][at])
     axes.quiver(*view.flat[at].T, *arrow.T, color="black", width=0.004, scale=16.0, pivot="mid")

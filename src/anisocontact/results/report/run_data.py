@@ -20,6 +20,8 @@ from anisocontact.results.report.frame import ContactView
 HARDLY = 0.1
 #: Component along x of an axis from which on it is the radial one.
 RADIAL = 0.5
+#: Turn, in radian, up to which a rigid body does no more than tilt.
+TILT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,21 @@ class RunData:
                     break
                 return text.format(plain(longest)), paths[longest]
         return "time [time]", self.history["time"]
+
+    @cached_property
+    def turning(self) -> dict[str, Floats]:
+        """Axis of each rigid body that turns, that of its largest turn, (3,)."""
+        found = {}
+        for body in self.summary.get("rigid", {}):
+            turn = self.vectors(f"rigid.{body}.turn")
+            size = np.linalg.norm(turn, axis=1)
+            if size.max(initial=0.0) > TILT:
+                found[body] = turn[np.argmax(size)] / size.max()
+        return found
+
+    def angle(self, body: str) -> Floats:
+        """Angle through which a rigid body has turned up to each row, there and back, (rows,)."""
+        return self._path(f"rigid.{body}.turn")
 
     def _turns_at(self, path: Floats, turns: Iterable[str]) -> bool:
         """Whether something turns in a step that has next to nothing of the length of a path."""
