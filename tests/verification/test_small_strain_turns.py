@@ -102,6 +102,24 @@ def test_steps_that_lead_a_body_through_a_turn(fe: Any, axis: Any) -> None:
     assert Solver(Problem(problem.model, rubber, problem.contacts), [_turn(90.0)]).cautions == []
 
 
+def test_a_limit_that_is_met_is_not_passed(fe: Any) -> None:
+    """Requirement: five degrees are taken, wherever the axis is, and a millionth more is not.
+
+    Source: what the message says. Rounding makes the angle of one axis less and of another more.
+    """
+    problem = fe.block(fe.interface(), cells=(2, 2, 1)).problem
+
+    def turn(degrees: float, x: float) -> Step:
+        angle = Turn((0.0, 0.0, 1.0), np.radians(degrees), point=(x, 0.5, 0.5))
+        return Step("turn", 1, rotation={"block.top": angle})
+
+    for x in (0.5, -1.9765886287625418, 2.2):
+        (said,) = Solver(problem, [turn(5.0, x)]).cautions
+        assert "by 5 degrees" in said
+        with pytest.raises(InputError, match="by 5 degrees"):
+            Solver(problem, [turn(5.000005, x)])
+
+
 def test_groups_that_are_displaced_against_each_other(fe: Any) -> None:
     """Two faces moved past each other turn a body as well; two that press it do not."""
     problem = fe.block(fe.interface(), cells=(2, 2, 1)).problem

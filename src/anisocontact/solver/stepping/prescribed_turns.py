@@ -19,6 +19,8 @@ from anisocontact.solver.terms.supports import Supports
 _PLACES = 16
 #: Share of the largest eigenvalue below which supports say nothing of a motion.
 _UNSEEN = 1e-6
+#: A limit that is met has not been passed, whatever rounding makes of the angle.
+_ROUNDING = 1.0 + 1e-9
 
 
 def prescribed_turns(
@@ -40,10 +42,10 @@ def prescribed_turns(
     linear = [name for name, law in sorted(materials.items()) if small_strain(law)]
     largest: dict[str, tuple[float, str]] = {}
     for step, name, angle in _angles(model, linear, steps):
-        if angle > largest.get(name, (WARNED, ""))[0]:
+        if angle > largest.get(name, (WARNED * _ROUNDING, ""))[0]:
             largest[name] = angle, f"step {step.name!r}"
     for name, (angle, field) in largest.items():
-        if angle > REFUSED:
+        if angle > REFUSED * _ROUNDING:
             text = f"supports turn body {name!r}, at small strain, by {_said(angle)}; {CURE}"
             raise InputError(text, field)
     return [
