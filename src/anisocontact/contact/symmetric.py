@@ -52,7 +52,7 @@ def check_symmetry(
     _check_normals(idealisation, interface, points, comm)
 
     def tractions(reference: Floats, tangents: Floats) -> Floats:
-        return _tractions(interface, reference, tangents, points.size)
+        return tractions_of_slip(interface, reference, tangents, points.size)
 
     off = _apart(idealisation, points, tractions, comm)
     if off:
@@ -98,7 +98,7 @@ def apart_in_another_plane(
             normal = np.cross(*tangents[i])
             plane = make_surface("plane", point=reference[i], normal=normal)
             interface = Interface(plane, law)
-            found[one] = _tractions(interface, reference[one], tangents[one], points.size)
+            found[one] = tractions_of_slip(interface, reference[one], tangents[one], points.size)
         return found
 
     return _apart(idealisation, points, tractions, comm)
@@ -138,8 +138,20 @@ def _check_normals(
         raise InputError(f"{text}, in which it has to be a line", "master")
 
 
-def _tractions(interface: Interface, reference: Floats, tangents: Floats, size: float) -> Floats:
-    """Tractions after a small slip, (n, 3); zero where there is no point of the surface below."""
+def tractions_of_slip(
+    interface: Interface, reference: Floats, tangents: Floats, size: float
+) -> Floats:
+    """Tractions where points are pushed onto a surface and moved along it by a small slip.
+
+    Args:
+        interface: Surface and laws.
+        reference: The points, (n, 3), length.
+        tangents: Two tangents of the slave, between which the slip is, (n, 2, 3).
+        size: Of a facet, length.
+
+    Returns:
+        Tractions, (n, 3), stress; zero where there is no point of the surface below.
+    """
     hit = interface.surface.project(reference)
     below = hit.status == PROJECTION_STATUS.index("interior")
     normal = np.where(below[:, None], hit.dgap_dx, 0.0)

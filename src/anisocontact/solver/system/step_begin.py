@@ -9,6 +9,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.material_warnings import doubtful_materials
+from anisocontact.contact.mirror_planes import unmirrored
 from anisocontact.contact.remote_nodes import with_ghosts
 from anisocontact.mesh.connected_components import unjoined_bodies
 from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
@@ -143,7 +144,8 @@ def _doubtful(parts: ProblemParts) -> list[str]:
     of_contacts = [nodes for contact in parts.contacts for nodes in contact.nodes_of_groups]
     links = [] if ties is None else ties.links
     tied = [parts.model.facet_nodes(group) for link in links for group in link]
-    return of_ties + bodies + unjoined_bodies(parts.model, of_contacts + tied)
+    directions = unmirrored(parts.contacts, parts.guides.of_planes())
+    return of_ties + bodies + directions + unjoined_bodies(parts.model, of_contacts + tied)
 
 
 def _cut_faces(parts: ProblemParts) -> list[SupportedFrame]:
