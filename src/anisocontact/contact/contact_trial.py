@@ -34,6 +34,8 @@ class ContactTrial:
         held: Projection on directions along which supports hold points and what they meet,
             (n, 3, 3), or none: tractions have nothing along them, multipliers have.
         closeness: Of points whose gap closes, see `Multipliers.closeness`, else infinite, (n,).
+        settled: Whether all points, on all ranks, have the status of the trial that the last
+            correction was linear about.
     """
 
     start: State
@@ -50,6 +52,7 @@ class ContactTrial:
     far: Floats
     held: Floats | None
     closeness: Floats
+    settled: bool = False
 
     @property
     def supported(self) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Codes, Floats
 from anisocontact.base.statuses import STICK
 from anisocontact.contact.active_set import Active
 from anisocontact.contact.contact_trial import ContactTrial
@@ -57,12 +57,14 @@ class Linearised:
         base: Tractions there, and what the multipliers have yet to take.
         slip: Slip by which the multipliers violate friction, see `Semismooth.stiff`.
         active: Which points are closed there.
+        status: Status of the points there, (n,).
     """
 
     linear: Linear
     base: Base
     slip: Floats
     active: Active
+    status: Codes
 
     @classmethod
     def of(
@@ -97,4 +99,4 @@ class Linearised:
         if follows.tangential:
             traction = traction + step.supported
         base = Base(follows.vector(step), traction, linear.slipped(slip), step.left)
-        return answer, cls(linear, base, slip, active)
+        return answer, cls(linear, base, slip, active, step.answer.status)

@@ -263,9 +263,17 @@ class Slender(Softer):
 
     Turns leave gaps to their square after a correction. Times a penalty of the material they would
     open points that press a beam by next to nothing, so that it springs back and closes them.
+    Where points still change their status, corrections leave what these penalties let them; where
+    none has, as little as others do: bodies that do not bend would take a half each time.
     """
 
     SHARES: ClassVar[tuple[float, float]] = (3e-4, 3e-4)
+    ratio: ClassVar[float] = RATIO / SHARES[0]
+
+    def _resolved(self, step: ContactTrial) -> float:
+        """As of `Semismooth`."""
+        most = super()._resolved(step)
+        return most if step.settled and self.share == 1.0 else min(most, RATIO)
 
 
 class Singly(Semismooth):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -201,11 +202,17 @@ class Trials:
         if self._restrained(trial.snapshot):
             trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
-        step = self._step(trial.snapshot)
+        step = replace(self._step(trial.snapshot), settled=self._settled(trial.snapshot))
         physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
         active = Active.of(step.answer, self._active.kept)
         answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical, active)
         return answer
+
+    def _settled(self, trial: Snapshot) -> bool:
+        """Whether the last correction has changed the status of no point; collective."""
+        about, now = self._linear, trial.response.status
+        changed = about is None or bool((about.status != now).any())
+        return not self._comm.allreduce(int(changed))
 
     def _follow(self, trial: Snapshot) -> bool:
         """Let points go with a master that has moved; whether trials start anew from there."""
