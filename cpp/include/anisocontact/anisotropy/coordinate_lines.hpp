@@ -35,7 +35,7 @@ class CoordinateLines {
  private:
   /// Ratio of |rho_1| and |rho_2| below which a coordinate line has shrunk to a point: far above
   /// the rounding of zero, far below what the units of the two coordinates make of it.
-  static constexpr double pole_limit = 1e-12;
+  static constexpr double pole_limit = 1e-14;
   Turn turn_;
 };
 
