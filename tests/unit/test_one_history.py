@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -85,3 +88,16 @@ def test_a_rigid_body_goes_on_in_its_own_problem():
     list(Solver(one, steps).run())
     with pytest.raises(InputError, match="rigid body 'plate': it has the history of another"):
         list(Solver(other, steps).run())
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_what_has_a_history_is_not_copied(copied):
+    """Requirement: a branch of a run is no copy of it, which would go on with the same history.
+
+    `copy.copy` of a problem moved the displacements and the contacts of the first one: what was
+    solved with that afterwards was off by half, without a word. The others spoke of a mesh of C++.
+    """
+    contact, (problem, _) = _problems(2)
+    for one in (contact, problem, Solver(problem, STEPS)):
+        with pytest.raises(TypeError, match=f"{type(one).__name__} is not copied, as the"):
+            copied(one)

@@ -241,3 +241,21 @@ def test_an_update_of_what_is_none_is_one_line(given: dict[str, Any], says: str)
     assert str(caught.value) == says
     with pytest.raises(InputError, match=r"^state: no states given"):
         interface.update(state[None], x)
+
+
+def test_value_objects_keep_what_they_were_given():
+    """Requirement: a step is what it was made of, also where a script goes on to write into that.
+
+    Source: by hand. A loop that writes the next value into the dictionary or list of the last one
+    made all its steps, bodies or turns those of the last value, without a word.
+    """
+    led, middle, way = {"block.top": {"z": 0.0}}, [0.0, 0.0, 0.0], np.zeros(3)
+    steps, turns, places = [], [], []
+    for i in range(3):
+        led["block.top"]["z"] = middle[0] = way[0] = float(i)
+        steps.append(anisocontact.Step(f"{i}", 1, led))
+        turns.append(anisocontact.Turn(axis=(0, 0, 1), angle=0.1, point=middle))
+        places.append(anisocontact.Placement(move=way))
+    assert [step.displacement["block.top"]["z"] for step in steps] == [0.0, 1.0, 2.0]
+    assert [turn.point[0] for turn in turns] == [0.0, 1.0, 2.0]
+    assert [place.move[0] for place in places] == [0.0, 1.0, 2.0]

@@ -7,6 +7,7 @@ what a number may be is checked where it is used.
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import math
 import types
@@ -36,6 +37,9 @@ _CALLED: Mapping[Any, str] = {
 def typed[F: Callable[..., Any]](made: F) -> F:
     """Let a function, or the constructor of a class, refuse arguments of other types.
 
+    A dataclass that is frozen has lists, dictionaries and arrays of its own, whatever a script goes
+    on to write into those that it gave.
+
     Args:
         made: The function or class; with annotations that are not `Any` or `object`.
 
@@ -52,7 +56,8 @@ def typed[F: Callable[..., Any]](made: F) -> F:
     """
     if isinstance(made, type):
         own: Any = made
-        own.__init__ = _checked(own.__init__)
+        frozen = dataclasses.is_dataclass(made) and own.__dataclass_params__.frozen
+        own.__init__ = _checked(_keeping(own.__init__) if frozen else own.__init__)
         return made
     return cast(F, _checked(made))
 
@@ -83,6 +88,23 @@ def _checked(function: Any) -> Any:
         return function(*args, **kwargs)
 
     return checked
+
+
+def _keeping(init: Any) -> Any:
+    @wraps(init)
+    def kept(self: Any, *args: Any, **kwargs: Any) -> None:
+        init(self, *map(_own, args), **{name: _own(value) for name, value in kwargs.items()})
+
+    return kept
+
+
+def _own(value: Any) -> Any:
+    """What nobody else writes into: copies of lists, dictionaries and arrays, nested or not."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if type(value) is list:
+        return [_own(one) for one in value]
+    return {k: _own(one) for k, one in value.items()} if type(value) is dict else value
 
 
 def _binds(function: Any, args: Any, kwargs: Any) -> bool:

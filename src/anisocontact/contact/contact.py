@@ -12,6 +12,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.one_history import OneHistory
 from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
+from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.contact.defaults import WithoutPenalty, exact
@@ -33,7 +34,7 @@ from anisocontact.rigid import MovingSurface, RigidBody
 
 
 @typed
-class Contact(ContactPair, OneHistory):
+class Contact(ContactPair, OneHistory, Uncopied):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
     At every slave point `t = N n + T`, from what is opposite on the master. The

@@ -17,6 +17,7 @@ from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
+from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.contact.hints import warn_of_overlaps
@@ -38,7 +39,7 @@ LIMITS = Limits()
 
 
 @typed
-class ContactProblem:
+class ContactProblem(Uncopied):
     """Residual form of the user plus contact, solved by PETSc SNES.
 
     What `dolfinx.fem.petsc.NonlinearProblem` is without contact: the residual is

@@ -12,6 +12,7 @@ from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
+from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
@@ -43,7 +44,7 @@ CLOSER, LESS_SURE = 0.05, 0.25
 
 
 @typed
-class Solver:
+class Solver(Uncopied):
     """Runs the steps of a problem.
 
     An increment that does not converge is cut into parts, and the parts grow again where they

@@ -10,6 +10,7 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
+from anisocontact.base.uncopied import Uncopied
 from anisocontact.bulk import Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -40,7 +41,7 @@ from anisocontact.solver.terms.tied_faces import Tie
 
 
 @typed
-class Problem(ComposedSystem):
+class Problem(ComposedSystem, Uncopied):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
