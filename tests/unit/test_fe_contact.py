@@ -65,6 +65,22 @@ def test_forces_and_matrices_agree_with_sums_over_points(skew_block):
     assert np.allclose(forces, expected, rtol=1e-12)
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_process_without_facets_has_no_blocks(fe, order):
+    """Requirement: a process that has no facet of a slave has no matrices of it, and goes on.
+
+    Source: by hand. A body at finite strain on a rigid surface ended with an internal error where
+    one of two processes had no facet of the contact.
+    """
+    from anisocontact.contact import facet_quadrature
+
+    model = fe.block(fe.interface(), order=order).model
+    rule = facet_quadrature(model.space, np.zeros(0, dtype=np.int32), 2)
+    nodes = rule.basis.shape[2]
+    assert rule.at_rest.area_matrices(np.zeros((0, 3))).shape == (0, 3 * nodes, 3 * nodes)
+    assert rule.facet_matrices(np.zeros((0, 3, 3))).shape == (0, 3 * nodes, 3 * nodes)
+
+
 def test_resultant_and_counts(fe):
     """Force and moment of a uniform overlap, closed form: eps d A, moment about the origin."""
     from anisocontact.solver import Step

@@ -190,9 +190,10 @@ class Surfaced:
             One matrix for each facet, rows and columns node by node, (m, 3 r, 3 k).
         """
         m, q, k = self.quadrature.basis.shape
-        pulls = self.quadrature.row_basis[..., None] * traction.reshape(m, q, 1, 3)
+        rows = self.quadrature.row_basis
+        pulls = (rows[..., None] * traction.reshape(m, q, 1, 3)).reshape(m, q, 3 * rows.shape[2])
         changes = self.area_changes.reshape(m, q, 3 * k)
-        return np.asarray(pulls.reshape(m, q, -1).swapaxes(1, 2) @ changes)
+        return np.asarray(pulls.swapaxes(1, 2) @ changes)
 
     @cached_property
     def area_changes(self) -> Floats:
