@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from tests.verification.test_energy_balance import only_flows
+from tests.verification.test_energy_of_flows import only_flows
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact

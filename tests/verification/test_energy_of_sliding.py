@@ -12,7 +12,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from tests.verification.test_energy_balance import jumping
+from tests.verification.test_energy_of_flows import jumping
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact

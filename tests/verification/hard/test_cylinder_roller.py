@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 gmsh = pytest.importorskip("gmsh")
 
@@ -60,37 +61,32 @@ force = { "cylinder.load" = { y = -17500 } }
 
 def _right_half(path: Path, order: int) -> None:
     """Half of both bodies, with facets of half a millimetre where they meet."""
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    shapes, field = gmsh.model.occ, gmsh.model.mesh.field
-    whole, left = shapes.addDisk(0, 50, 0, 50, 50), shapes.addRectangle(-60, -10, 0, 60, 130)
-    cylinder = shapes.cut([(2, whole)], [(2, left)])[0][0][1]
-    block = shapes.addRectangle(0, -200, 0, 100, 200)
-    shapes.synchronize()
-    for surface, name, face, height in (
-        (cylinder, "cylinder", "skin", None),
-        (block, "block", "top", 0.0),
-    ):
-        gmsh.model.addPhysicalGroup(2, [surface], name=name)
-        for _, curve in gmsh.model.getBoundary([(2, surface)], oriented=False):
-            low, high = np.array(gmsh.model.getBoundingBox(1, curve)).reshape(2, 3)
-            if high[0] < 1e-3:
-                gmsh.model.addPhysicalGroup(1, [curve], name=f"{name}-axis")
-            elif height is None or np.ptp([low[1], high[1], height]) < 1e-3:
-                gmsh.model.addPhysicalGroup(1, [curve], name=face)
-            elif high[1] < -199.0:
-                gmsh.model.addPhysicalGroup(1, [curve], name="bottom")
-    near = field.add("Ball")
-    sizes = {"Radius": 12.0, "VIn": FACET, "VOut": 12.0, "Thickness": 80.0}
-    for name, value in sizes.items():
-        field.setNumber(near, name, value)
-    field.setAsBackgroundMesh(near)
-    for name in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
-        gmsh.option.setNumber(f"Mesh.{name}", 0)
-    gmsh.model.mesh.generate(2)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path, order):
+        shapes, field = gmsh.model.occ, gmsh.model.mesh.field
+        whole, left = shapes.addDisk(0, 50, 0, 50, 50), shapes.addRectangle(-60, -10, 0, 60, 130)
+        cylinder = shapes.cut([(2, whole)], [(2, left)])[0][0][1]
+        block = shapes.addRectangle(0, -200, 0, 100, 200)
+        shapes.synchronize()
+        for surface, name, face, height in (
+            (cylinder, "cylinder", "skin", None),
+            (block, "block", "top", 0.0),
+        ):
+            gmsh.model.addPhysicalGroup(2, [surface], name=name)
+            for _, curve in gmsh.model.getBoundary([(2, surface)], oriented=False):
+                low, high = np.array(gmsh.model.getBoundingBox(1, curve)).reshape(2, 3)
+                if high[0] < 1e-3:
+                    gmsh.model.addPhysicalGroup(1, [curve], name=f"{name}-axis")
+                elif height is None or np.ptp([low[1], high[1], height]) < 1e-3:
+                    gmsh.model.addPhysicalGroup(1, [curve], name=face)
+                elif high[1] < -199.0:
+                    gmsh.model.addPhysicalGroup(1, [curve], name="bottom")
+        near = field.add("Ball")
+        sizes = {"Radius": 12.0, "VIn": FACET, "VOut": 12.0, "Thickness": 80.0}
+        for name, value in sizes.items():
+            field.setNumber(near, name, value)
+        field.setAsBackgroundMesh(near)
+        for name in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+            gmsh.option.setNumber(f"Mesh.{name}", 0)
 
 
 @pytest.mark.parametrize("order", [1, 2])

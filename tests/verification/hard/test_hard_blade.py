@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 gmsh = pytest.importorskip("gmsh")
 
@@ -51,15 +52,11 @@ def _polygon(name: str, corners: list[tuple[float, float]], size: float, *sides:
 
 
 def _blade(path: Path, half_angle: float) -> None:
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    wide = 2.0 * np.tan(np.radians(half_angle))
-    _polygon("blade", [(0, 0), (wide, 2), (-wide, 2)], 0.12, "flanks", "back", "flanks")
-    low, high = [(-3, -2), (3, -2)], [(3, 0), (-3, 0)]
-    _polygon("base", low + high, 0.15, "bottom", "right", "top", "left")
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path):
+        wide = 2.0 * np.tan(np.radians(half_angle))
+        _polygon("blade", [(0, 0), (wide, 2), (-wide, 2)], 0.12, "flanks", "back", "flanks")
+        low, high = [(-3, -2), (3, -2)], [(3, 0), (-3, 0)]
+        _polygon("base", low + high, 0.15, "bottom", "right", "top", "left")
 
 
 @pytest.mark.parametrize("half_angle", [15.0, 50.0])

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 gmsh = pytest.importorskip("gmsh")
 
@@ -53,28 +54,25 @@ temperature = { pin = 10 }
 
 def _quarters(path: Path, order: int, sizes: dict[str, float]) -> None:
     """Quarters of a slice of pin and hub, of unstructured tetrahedra."""
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    shapes = gmsh.model.occ
-    round_ = [shapes.addCylinder(0, 0, 0, 0, 0, HEIGHT, r, angle=np.pi / 2) for r in (1, 1, 2)]
-    hub = shapes.cut([(3, round_[2])], [(3, round_[1])])[0][0][1]
-    shapes.synchronize()
-    for body, volume in (("pin", round_[0]), ("hub", hub)):
-        gmsh.model.addPhysicalGroup(3, [volume], name=body)
-        groups: dict[str, list[int]] = {}
-        for _, face in gmsh.model.getBoundary([(3, volume)], oriented=False):
-            low, high = np.array(gmsh.model.getBoundingBox(2, face)).reshape(2, 3)
-            flat = np.ptp([low, high], axis=0) < 1e-4
-            name = "xyz"[int(flat.argmax())] if flat.any() else "fit" if high[0] < 1.1 else "out"
-            groups.setdefault(f"{body}.{name}", []).append(face)
-        for name, faces in groups.items():
-            gmsh.model.addPhysicalGroup(2, faces, name=name)
-        ends = gmsh.model.getBoundary([(3, volume)], recursive=True, oriented=False)
-        gmsh.model.mesh.setSize(ends, sizes[body])
-    gmsh.model.mesh.generate(3)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path, order, dim=3):
+        shapes = gmsh.model.occ
+        round_ = [shapes.addCylinder(0, 0, 0, 0, 0, HEIGHT, r, angle=np.pi / 2) for r in (1, 1, 2)]
+        hub = shapes.cut([(3, round_[2])], [(3, round_[1])])[0][0][1]
+        shapes.synchronize()
+        for body, volume in (("pin", round_[0]), ("hub", hub)):
+            gmsh.model.addPhysicalGroup(3, [volume], name=body)
+            groups: dict[str, list[int]] = {}
+            for _, face in gmsh.model.getBoundary([(3, volume)], oriented=False):
+                low, high = np.array(gmsh.model.getBoundingBox(2, face)).reshape(2, 3)
+                flat = np.ptp([low, high], axis=0) < 1e-4
+                name = (
+                    "xyz"[int(flat.argmax())] if flat.any() else "fit" if high[0] < 1.1 else "out"
+                )
+                groups.setdefault(f"{body}.{name}", []).append(face)
+            for name, faces in groups.items():
+                gmsh.model.addPhysicalGroup(2, faces, name=name)
+            ends = gmsh.model.getBoundary([(3, volume)], recursive=True, oriented=False)
+            gmsh.model.mesh.setSize(ends, sizes[body])
 
 
 @pytest.mark.parametrize("order", [1, 2])

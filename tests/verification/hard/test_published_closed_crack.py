@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 ASKEW, FRICTION, E, NU, HALF = float(np.radians(40.0)), 0.3, 1000.0, 0.3, 20.0
 
@@ -49,45 +50,39 @@ pressure = {{{{ "plate.top" = 1, "plate.bottom" = 1 }}}}
 
 def mesh(path: Path, above: int, below: int, order: int) -> None:
     """Triangles of gmsh around a slit of length 2, with so many edges on its lips."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo = gmsh.model.geo
+    with drawn(path, order) as gmsh:
+        geo = gmsh.model.geo
 
-    def points(size: float, *places: tuple[float, float]) -> list[int]:
-        return [geo.addPoint(x, y, 0.0, size) for x, y in places]
+        def points(size: float, *places: tuple[float, float]) -> list[int]:
+            return [geo.addPoint(x, y, 0.0, size) for x, y in places]
 
-    def ring(*lines: int) -> int:
-        return int(geo.addPlaneSurface([geo.addCurveLoop(lines)]))
+        def ring(*lines: int) -> int:
+            return int(geo.addPlaneSurface([geo.addCurveLoop(lines)]))
 
-    rise = HALF * float(np.tan(ASKEW))
-    corners = points(HALF / 5, (-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF))
-    ends = points(HALF / 5, (-HALF, -rise), (HALF, rise))
-    tip = (float(np.cos(ASKEW)), float(np.sin(ASKEW)))
-    tips = points(2.0 / above, (-tip[0], -tip[1]), tip)
-    upper, lower = geo.addLine(*tips), geo.addLine(*tips)
-    for lip, edges in ((upper, above), (lower, below)):
-        geo.mesh.setTransfiniteCurve(lip, edges + 1)
-    left, right = geo.addLine(ends[0], tips[0]), geo.addLine(tips[1], ends[1])
-    over = [ends[1], corners[2], corners[3], ends[0]]
-    under = [ends[0], corners[0], corners[1], ends[1]]
-    over, under = ([geo.addLine(*pair) for pair in pairwise(one)] for one in (over, under))
-    plate = [ring(left, upper, right, *over), ring(*under, -right, -lower, -left)]
-    geo.synchronize()
-    for dim, tags, name in (
-        (2, plate, "plate"),
-        (1, [upper], "plate.upper"),
-        (1, [lower], "plate.lower"),
-        (1, over[1:2], "plate.top"),
-        (1, under[1:2], "plate.bottom"),
-        (0, corners[:1], "plate.left"),
-        (0, corners[1:2], "plate.right"),
-    ):
-        gmsh.model.addPhysicalGroup(dim, tags, name=name)
-    gmsh.model.mesh.generate(2)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(path))
-    gmsh.finalize()
+        rise = HALF * float(np.tan(ASKEW))
+        corners = points(HALF / 5, (-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF))
+        ends = points(HALF / 5, (-HALF, -rise), (HALF, rise))
+        tip = (float(np.cos(ASKEW)), float(np.sin(ASKEW)))
+        tips = points(2.0 / above, (-tip[0], -tip[1]), tip)
+        upper, lower = geo.addLine(*tips), geo.addLine(*tips)
+        for lip, edges in ((upper, above), (lower, below)):
+            geo.mesh.setTransfiniteCurve(lip, edges + 1)
+        left, right = geo.addLine(ends[0], tips[0]), geo.addLine(tips[1], ends[1])
+        over = [ends[1], corners[2], corners[3], ends[0]]
+        under = [ends[0], corners[0], corners[1], ends[1]]
+        over, under = ([geo.addLine(*pair) for pair in pairwise(one)] for one in (over, under))
+        plate = [ring(left, upper, right, *over), ring(*under, -right, -lower, -left)]
+        geo.synchronize()
+        for dim, tags, name in (
+            (2, plate, "plate"),
+            (1, [upper], "plate.upper"),
+            (1, [lower], "plate.lower"),
+            (1, over[1:2], "plate.top"),
+            (1, under[1:2], "plate.bottom"),
+            (0, corners[:1], "plate.left"),
+            (0, corners[1:2], "plate.right"),
+        ):
+            gmsh.model.addPhysicalGroup(dim, tags, name=name)
 
 
 @pytest.mark.parametrize("sides", [("upper", "lower"), ("lower", "upper")])

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 RADIUS, E, NU, MU = 100.0, 1000.0, 0.3, 0.4
 REDUCED = 0.5 * E / (1.0 - NU**2)
@@ -69,58 +70,53 @@ traction = {{{{ "block.right" = {{{{ x = {STRETCH} }}}}, "block.left" = {{{{x = 
 
 def mesh(path: Path) -> None:
     """Triangles of gmsh, 0.125 long on the cylinder and 0.1 on the block where they touch."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo, field = gmsh.model.geo, gmsh.model.mesh.field
+    with drawn(path) as gmsh:
+        geo, field = gmsh.model.geo, gmsh.model.mesh.field
 
-    def points(*places: tuple[float, float]) -> list[int]:
-        return [geo.addPoint(x, y, 0.0) for x, y in places]
+        def points(*places: tuple[float, float]) -> list[int]:
+            return [geo.addPoint(x, y, 0.0) for x, y in places]
 
-    def ring(corners: list[int], *first: int) -> list[int]:
-        rest = corners[len(first) :]
-        ends = [*rest[1:], corners[0]]
-        return [*first, *(geo.addLine(*pair) for pair in zip(rest, ends, strict=True))]
+        def ring(corners: list[int], *first: int) -> list[int]:
+            rest = corners[len(first) :]
+            ends = [*rest[1:], corners[0]]
+            return [*first, *(geo.addLine(*pair) for pair in zip(rest, ends, strict=True))]
 
-    end = RADIUS - np.sqrt(RADIUS**2 - 144.0)
-    lower = points((-24, -24), (0, -24), (24, -24), (24, 0), (0, 0), (-24, 0))
-    upper = points((-12, end), (0, 0), (12, end), (12, 12), (-12, 12))
-    (centre,) = points((0, RADIUS))
-    nose = [geo.addCircleArc(upper[i], centre, upper[i + 1]) for i in range(2)]
-    around, above = ring(lower), ring(upper, *nose)
-    block, pad = (geo.addPlaneSurface([geo.addCurveLoop(one)]) for one in (around, above))
-    geo.synchronize()
-    for dim, tags, name in (
-        (2, [block], "block"),
-        (2, [pad], "pad"),
-        (1, around[:2], "block.bottom"),
-        (1, around[2:3], "block.right"),
-        (1, around[3:5], "block.top"),
-        (1, around[5:], "block.left"),
-        (0, lower[1:2], "block.middle"),
-        (1, nose, "pad.nose"),
-        (1, above[3:4], "pad.top"),
-    ):
-        gmsh.model.addPhysicalGroup(dim, tags, name=name)
-    sizes = []
-    for surface, point, size, far in ((pad, upper[1], 0.125, 12), (block, lower[4], 0.1, 24)):
-        away, grown, one = field.add("Distance"), field.add("Threshold"), field.add("Restrict")
-        field.setNumbers(away, "PointsList", [point])
-        field.setNumber(grown, "InField", away)
-        for key, values in (("Size", (size, far / 6)), ("Dist", (1.5, far))):
-            for end_of, value in zip(("Min", "Max"), values, strict=True):
-                field.setNumber(grown, key + end_of, value)
-        field.setNumber(one, "InField", grown)
-        field.setNumbers(one, "SurfacesList", [surface])
-        sizes.append(one)
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", sizes)
-    field.setAsBackgroundMesh(least)
-    for key in ("FromPoints", "ExtendFromBoundary"):
-        gmsh.option.setNumber(f"Mesh.MeshSize{key}", 0)
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+        end = RADIUS - np.sqrt(RADIUS**2 - 144.0)
+        lower = points((-24, -24), (0, -24), (24, -24), (24, 0), (0, 0), (-24, 0))
+        upper = points((-12, end), (0, 0), (12, end), (12, 12), (-12, 12))
+        (centre,) = points((0, RADIUS))
+        nose = [geo.addCircleArc(upper[i], centre, upper[i + 1]) for i in range(2)]
+        around, above = ring(lower), ring(upper, *nose)
+        block, pad = (geo.addPlaneSurface([geo.addCurveLoop(one)]) for one in (around, above))
+        geo.synchronize()
+        for dim, tags, name in (
+            (2, [block], "block"),
+            (2, [pad], "pad"),
+            (1, around[:2], "block.bottom"),
+            (1, around[2:3], "block.right"),
+            (1, around[3:5], "block.top"),
+            (1, around[5:], "block.left"),
+            (0, lower[1:2], "block.middle"),
+            (1, nose, "pad.nose"),
+            (1, above[3:4], "pad.top"),
+        ):
+            gmsh.model.addPhysicalGroup(dim, tags, name=name)
+        sizes = []
+        for surface, point, size, far in ((pad, upper[1], 0.125, 12), (block, lower[4], 0.1, 24)):
+            away, grown, one = field.add("Distance"), field.add("Threshold"), field.add("Restrict")
+            field.setNumbers(away, "PointsList", [point])
+            field.setNumber(grown, "InField", away)
+            for key, values in (("Size", (size, far / 6)), ("Dist", (1.5, far))):
+                for end_of, value in zip(("Min", "Max"), values, strict=True):
+                    field.setNumber(grown, key + end_of, value)
+            field.setNumber(one, "InField", grown)
+            field.setNumbers(one, "SurfacesList", [surface])
+            sizes.append(one)
+        least = field.add("Min")
+        field.setNumbers(least, "FieldsList", sizes)
+        field.setAsBackgroundMesh(least)
+        for key in ("FromPoints", "ExtendFromBoundary"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{key}", 0)
 
 
 def shear(x: Any, eccentric: float) -> Any:

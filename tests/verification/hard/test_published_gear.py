@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 MODULE, TEETH, PRESSURE_ANGLE = 4.0, (20, 30), float(np.radians(20.0))
 PITCH = tuple(0.5 * MODULE * z for z in TEETH)
@@ -100,23 +101,18 @@ def tooth(geo: Any, gear: int, centre: float, angle: float, size: float) -> tupl
 
 def mesh(path: Path) -> None:
     """Triangles; flanks have facets of 0.2 and 0.23, which do not match."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo, begin = gmsh.model.geo, float(np.radians(START))
-    turned = begin, np.pi - begin * PITCH[0] / PITCH[1]
-    places = [
-        tooth(geo, i, i * sum(PITCH), turned[i] - 0.5 * np.pi / TEETH[i], size)
-        for i, size in enumerate((0.2, 0.226))
-    ]
-    geo.synchronize()
-    for body, (surface, flank, root) in zip(("pinion", "wheel"), places, strict=True):
-        gmsh.model.addPhysicalGroup(2, [surface], name=body)
-        gmsh.model.addPhysicalGroup(1, [flank], name=f"{body}.flank")
-        gmsh.model.addPhysicalGroup(1, [root], name=f"{body}.hub")
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path) as gmsh:
+        geo, begin = gmsh.model.geo, float(np.radians(START))
+        turned = begin, np.pi - begin * PITCH[0] / PITCH[1]
+        places = [
+            tooth(geo, i, i * sum(PITCH), turned[i] - 0.5 * np.pi / TEETH[i], size)
+            for i, size in enumerate((0.2, 0.226))
+        ]
+        geo.synchronize()
+        for body, (surface, flank, root) in zip(("pinion", "wheel"), places, strict=True):
+            gmsh.model.addPhysicalGroup(2, [surface], name=body)
+            gmsh.model.addPhysicalGroup(1, [flank], name=f"{body}.flank")
+            gmsh.model.addPhysicalGroup(1, [root], name=f"{body}.hub")
 
 
 def test_past_the_pitch_point(tmp_path: Path, to_the_end: Callable[..., Any]) -> None:

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
@@ -56,49 +57,43 @@ SIDES = ("sheet.hole", "pin.rim")
 
 def mesh(path: Path, along_hole: int, along_pin: int, order: int = 2) -> None:
     """Quadrilaterals of gmsh, with so many edges on a quarter of hole and pin."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo = gmsh.model.geo
+    with drawn(path, order) as gmsh:
+        geo = gmsh.model.geo
 
-    def points(*places: tuple[float, float]) -> list[int]:
-        return [geo.addPoint(x, y, 0.0, 10.0) for x, y in places]
+        def points(*places: tuple[float, float]) -> list[int]:
+            return [geo.addPoint(x, y, 0.0, 10.0) for x, y in places]
 
-    def quarters(ends: list[int], centre: int, edges: int) -> list[int]:
-        arcs = [geo.addCircleArc(ends[i], centre, ends[i + 1]) for i in range(2)]
-        for arc in arcs:
-            geo.mesh.setTransfiniteCurve(arc, edges + 1)
-        return arcs
+        def quarters(ends: list[int], centre: int, edges: int) -> list[int]:
+            arcs = [geo.addCircleArc(ends[i], centre, ends[i + 1]) for i in range(2)]
+            for arc in arcs:
+                geo.mesh.setTransfiniteCurve(arc, edges + 1)
+            return arcs
 
-    middle, centre = points((0, 0), (0, 0))
-    hole, rim = (points((50, 0), (0, 50), (-50, 0)) for _ in range(2))
-    nose, top, corner, left = points((100, 0), (0, 100), (-200, 100), (-200, 0))
-    inner, outer = quarters(hole, middle, along_hole), geo.addCircleArc(nose, middle, top)
-    ahead, back = geo.addLine(hole[0], nose), geo.addLine(left, hole[2])
-    side = geo.addLine(corner, left)
-    around = [ahead, outer, geo.addLine(top, corner), side, back, -inner[1], -inner[0]]
-    sheet = geo.addPlaneSurface([geo.addCurveLoop(around)])
-    round_pin = quarters(rim, centre, along_pin)
-    across = [geo.addLine(rim[2], centre), geo.addLine(centre, rim[0])]
-    pin = geo.addPlaneSurface([geo.addCurveLoop([*round_pin, *across])])
-    geo.synchronize()
-    for dim, tags, name in (
-        (2, [sheet], "sheet"),
-        (2, [pin], "pin"),
-        (1, inner, "sheet.hole"),
-        (1, round_pin, "pin.rim"),
-        (1, [ahead, back], "sheet.axis"),
-        (1, across, "pin.axis"),
-        (1, [side], "sheet.left"),
-        (0, [centre], "pin.centre"),
-    ):
-        gmsh.model.addPhysicalGroup(dim, tags, name=name)
-    gmsh.option.setNumber("Mesh.RecombineAll", 1)
-    gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 2)
-    gmsh.model.mesh.generate(2)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(path))
-    gmsh.finalize()
+        middle, centre = points((0, 0), (0, 0))
+        hole, rim = (points((50, 0), (0, 50), (-50, 0)) for _ in range(2))
+        nose, top, corner, left = points((100, 0), (0, 100), (-200, 100), (-200, 0))
+        inner, outer = quarters(hole, middle, along_hole), geo.addCircleArc(nose, middle, top)
+        ahead, back = geo.addLine(hole[0], nose), geo.addLine(left, hole[2])
+        side = geo.addLine(corner, left)
+        around = [ahead, outer, geo.addLine(top, corner), side, back, -inner[1], -inner[0]]
+        sheet = geo.addPlaneSurface([geo.addCurveLoop(around)])
+        round_pin = quarters(rim, centre, along_pin)
+        across = [geo.addLine(rim[2], centre), geo.addLine(centre, rim[0])]
+        pin = geo.addPlaneSurface([geo.addCurveLoop([*round_pin, *across])])
+        geo.synchronize()
+        for dim, tags, name in (
+            (2, [sheet], "sheet"),
+            (2, [pin], "pin"),
+            (1, inner, "sheet.hole"),
+            (1, round_pin, "pin.rim"),
+            (1, [ahead, back], "sheet.axis"),
+            (1, across, "pin.axis"),
+            (1, [side], "sheet.left"),
+            (0, [centre], "pin.centre"),
+        ):
+            gmsh.model.addPhysicalGroup(dim, tags, name=name)
+        gmsh.option.setNumber("Mesh.RecombineAll", 1)
+        gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 2)
 
 
 def test_loaded_pin(tmp_path: Path, to_the_end: Callable[..., Any]) -> None:

@@ -24,8 +24,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from tests.verification.hard.drawn import graded
 
 RADIUS, EXTENT, ALONG, ACROSS = 1e4, 60.0, 1.0, 0.4
 
@@ -70,18 +70,10 @@ motion.roll = {{ x = 4.8e-3 }}
 """
 
 
-def planes(facets: int) -> npt.NDArray[np.float64]:
-    """Places of nodes at x >= 0: even ones to beyond the contact, then ever farther apart."""
-    fine = np.arange(8 * facets // 5 + 1) / facets
-    grown = np.cumsum(1.35 ** np.arange(1, 40)) / facets
-    coarse = grown[: np.searchsorted(grown, EXTENT - fine[-1]) + 1]
-    return np.concatenate([fine, fine[-1] + coarse * (EXTENT - fine[-1]) / coarse[-1]]) / EXTENT
-
-
 @pytest.mark.parametrize(("angle", "facets", "order"), [(0.0, 8, 1), (35.0, 8, 1), (-60.0, 4, 2)])
 def test_pressure(to_the_end: Callable[..., Any], angle: float, facets: int, order: int) -> None:
     """Axes of friction at an angle to the way."""
-    x = planes(facets)
+    x = graded(facets, 8 * facets // 5, EXTENT)
     text = CASE.format(
         along=2 * len(x) - 2,
         down=len(x) - 1,

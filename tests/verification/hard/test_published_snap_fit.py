@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 LENGTH, RAMP, FRICTION, E, NU = 20.0, float(np.radians(30.0)), 0.2, 2000.0, 0.35
 TIP = 1.0 + 3.0 * float(np.tan(RAMP))
@@ -55,38 +56,33 @@ increments = 6
 
 def mesh(path: Path) -> None:
     """Triangles of gmsh, three across the beam; the catch has a rounded corner."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo = gmsh.model.geo
+    with drawn(path) as gmsh:
+        geo = gmsh.model.geo
 
-    def points(size: float, *places: tuple[float, float]) -> list[int]:
-        return [geo.addPoint(x, y, 0.0, size) for x, y in places]
+        def points(size: float, *places: tuple[float, float]) -> list[int]:
+            return [geo.addPoint(x, y, 0.0, size) for x, y in places]
 
-    def surface(lines: list[int]) -> int:
-        return int(geo.addPlaneSurface([geo.addCurveLoop(lines)]))
+        def surface(lines: list[int]) -> int:
+            return int(geo.addPlaneSurface([geo.addCurveLoop(lines)]))
 
-    hook = points(1 / 3, (-LENGTH, 0), (6, 0), (6, 1), (3, TIP), (2, 1), (-LENGTH, 1))
-    beam = [geo.addLine(*ends) for ends in pairwise([*hook, hook[0]])]
-    corner, *rest = points(0.27, (6.7, 1.1), (9, 1.1), (9, 4), (6.2, 4), (6.2, 1.6))
-    (middle,) = points(0.27, (6.7, 1.6))
-    block = [geo.addLine(*ends) for ends in pairwise([corner, *rest])]
-    block.append(geo.addCircleArc(rest[-1], middle, corner))
-    geo.mesh.setTransfiniteCurve(block[-1], 5)
-    bodies = [surface(beam), surface(block)]
-    geo.synchronize()
-    for dim, tags, name in (
-        (2, bodies[:1], "hook"),
-        (2, bodies[1:], "catch"),
-        (1, beam[5:], "hook.clamp"),
-        (1, beam[1:4], "hook.nose"),
-        (1, [block[0], *block[3:]], "catch.face"),
-        (1, block[2:3], "catch.top"),
-    ):
-        gmsh.model.addPhysicalGroup(dim, tags, name=name)
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+        hook = points(1 / 3, (-LENGTH, 0), (6, 0), (6, 1), (3, TIP), (2, 1), (-LENGTH, 1))
+        beam = [geo.addLine(*ends) for ends in pairwise([*hook, hook[0]])]
+        corner, *rest = points(0.27, (6.7, 1.1), (9, 1.1), (9, 4), (6.2, 4), (6.2, 1.6))
+        (middle,) = points(0.27, (6.7, 1.6))
+        block = [geo.addLine(*ends) for ends in pairwise([corner, *rest])]
+        block.append(geo.addCircleArc(rest[-1], middle, corner))
+        geo.mesh.setTransfiniteCurve(block[-1], 5)
+        bodies = [surface(beam), surface(block)]
+        geo.synchronize()
+        for dim, tags, name in (
+            (2, bodies[:1], "hook"),
+            (2, bodies[1:], "catch"),
+            (1, beam[5:], "hook.clamp"),
+            (1, beam[1:4], "hook.nose"),
+            (1, [block[0], *block[3:]], "catch.face"),
+            (1, block[2:3], "catch.top"),
+        ):
+            gmsh.model.addPhysicalGroup(dim, tags, name=name)
 
 
 def test_ramp(tmp_path: Path, to_the_end: Callable[..., Any]) -> None:

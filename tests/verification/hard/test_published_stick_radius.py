@@ -20,10 +20,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk
+from tests.verification.hard.drawn import graded
 
 NU, SLOPE, SIZE, INCREMENTS = 0.35, 1e-4, 30.0, 8
 BETA = (1.0 - 2.0 * NU) / (2.0 * (1.0 - NU))
@@ -95,14 +95,6 @@ def stick(mu: float) -> float:
     return float(brentq(apart, 1e-6, 1.0 - 1e-12))
 
 
-def planes(facets: int) -> npt.NDArray[np.float64]:
-    """Places of nodes as shares of the size, `facets` a unit and then ever farther apart."""
-    fine = np.arange(5 * facets // 4 + 1) / facets
-    grown = np.cumsum(1.35 ** np.arange(1, 40)) / facets
-    coarse = grown[: np.searchsorted(grown, SIZE - fine[-1]) + 1]
-    return np.concatenate([fine, fine[-1] + coarse * (SIZE - fine[-1]) / coarse[-1]]) / SIZE
-
-
 @pytest.mark.parametrize(
     ("tool", "facets", "order", "share"),
     [("cone", 8, 1, 0.7), ("sphere", 8, 1, 0.5), ("sphere", 4, 2, 1.0), ("quartic", 8, 1, 0.7)],
@@ -112,7 +104,7 @@ def test_stick_radius(
 ) -> None:
     """Facets across the contact, friction over Dundurs' constant."""
     power, surface, depth = TOOLS[tool]
-    x, times = planes(facets), np.linspace(0.0, 1.0, INCREMENTS + 1)
+    x, times = graded(facets, 5 * facets // 4, SIZE), np.linspace(0.0, 1.0, INCREMENTS + 1)
     text = CASE.format(
         size=SIZE,
         cells=len(x) - 1,

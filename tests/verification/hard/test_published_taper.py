@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
@@ -72,31 +73,26 @@ until = {{ contact = "{sides[0]}", event = "sliding" }}
 
 def mesh(path: Path) -> None:
     """Quadrilaterals of gmsh; 14 facets along the hub, and 18 along the longer shaft."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo = gmsh.model.geo
-    cone = {y: 10.0 + np.tan(SLOPE) * y for y in (-5, 0, 20, 25)}
-    shaft = ((0, -5), (cone[-5], -5), (cone[25], 25), (0, 25))
-    hub = ((cone[0], 0), (20, 0), (20, 20), (cone[20], 20))
-    for name, corners, cells, groups in (
-        ("shaft", shaft, (6, 18), ("bottom", "cone", "top", "axis")),
-        ("hub", hub, (6, 14), ("bottom", "outer", "top", "bore")),
-    ):
-        points = [geo.addPoint(x, y, 0.0) for x, y in corners]
-        lines = [geo.addLine(points[i], points[(i + 1) % 4]) for i in range(4)]
-        for i, line in enumerate(lines):
-            geo.mesh.setTransfiniteCurve(line, cells[i % 2] + 1)
-        face = geo.addPlaneSurface([geo.addCurveLoop(lines)])
-        geo.mesh.setTransfiniteSurface(face)
-        geo.mesh.setRecombine(2, face)
-        geo.synchronize()
-        gmsh.model.addPhysicalGroup(2, [face], name=name)
-        for line, group in zip(lines, groups, strict=True):
-            gmsh.model.addPhysicalGroup(1, [line], name=f"{name}.{group}")
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path) as gmsh:
+        geo = gmsh.model.geo
+        cone = {y: 10.0 + np.tan(SLOPE) * y for y in (-5, 0, 20, 25)}
+        shaft = ((0, -5), (cone[-5], -5), (cone[25], 25), (0, 25))
+        hub = ((cone[0], 0), (20, 0), (20, 20), (cone[20], 20))
+        for name, corners, cells, groups in (
+            ("shaft", shaft, (6, 18), ("bottom", "cone", "top", "axis")),
+            ("hub", hub, (6, 14), ("bottom", "outer", "top", "bore")),
+        ):
+            points = [geo.addPoint(x, y, 0.0) for x, y in corners]
+            lines = [geo.addLine(points[i], points[(i + 1) % 4]) for i in range(4)]
+            for i, line in enumerate(lines):
+                geo.mesh.setTransfiniteCurve(line, cells[i % 2] + 1)
+            face = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+            geo.mesh.setTransfiniteSurface(face)
+            geo.mesh.setRecombine(2, face)
+            geo.synchronize()
+            gmsh.model.addPhysicalGroup(2, [face], name=name)
+            for line, group in zip(lines, groups, strict=True):
+                gmsh.model.addPhysicalGroup(1, [line], name=f"{name}.{group}")
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from tests.verification.hard.drawn import graded
 
 Floats = npt.NDArray[np.float64]
 
@@ -74,17 +75,9 @@ load = {{ tool = {{ y = -1, rz = -0.4 }} }}
 """
 
 
-def planes(facets: int) -> Floats:
-    """Places of nodes at x >= 0: even ones to beyond the punch, then ever farther apart."""
-    fine = np.arange(5 * facets // 4 + 1) / facets
-    grown = np.cumsum(1.4 ** np.arange(1, 40)) / facets
-    coarse = grown[: np.searchsorted(grown, EXTENT - fine[-1]) + 1]
-    return np.concatenate([fine, fine[-1] + coarse * (EXTENT - fine[-1]) / coarse[-1]])
-
-
 def pressed(run: Callable[..., Any], facets: int, order: int) -> tuple[float, Floats, Floats]:
     """Tilt, and places and pressures of the slave nodes at the middle of the punch."""
-    x = planes(facets) / EXTENT
+    x = graded(facets, 5 * facets // 4, EXTENT, 1.4)
     both = 0.5 + 0.5 * np.concatenate([-x[:0:-1], x])
     text = CASE.format(
         along=len(both) - 1,

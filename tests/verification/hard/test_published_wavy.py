@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn
 
 HIGH = 0.002
 FULL = np.pi * 0.5 * 1000.0 / (1.0 - 0.3**2) * HIGH
@@ -54,28 +55,27 @@ pressure = {{ "upper.far" = {mean!r} }}
 
 def mesh(path: Path, facets: dict[str, int], order: int) -> None:
     """Triangles of gmsh; the wave is a spline through points on it."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo = gmsh.model.geo
-    for name, far, high in (("upper", 1.5, HIGH), ("lower", -1.5, 0.0)):
-        places = np.linspace(0.0, 0.5, 4 * facets[name] + 1)
-        heights = high * (1.0 - np.cos(2.0 * np.pi * places))
-        size = 0.5 / facets[name]
-        points = [geo.addPoint(x, y, 0, size) for x, y in zip(places, heights, strict=True)]
-        face = geo.addSpline(points)
-        ends = [points[-1], geo.addPoint(0.5, far, 0, 0.2), geo.addPoint(0, far, 0, 0.2), points[0]]
-        lines = [face, *(geo.addLine(*ends[i : i + 2]) for i in range(3))]
-        geo.mesh.setTransfiniteCurve(face, facets[name] + 1)
-        body = geo.addPlaneSurface([geo.addCurveLoop(lines)])
-        geo.synchronize()
-        gmsh.model.addPhysicalGroup(2, [body], name=name)
-        for line, group in zip(lines, ("face", "right", "far", "left"), strict=True):
-            gmsh.model.addPhysicalGroup(1, [line], name=f"{name}.{group}")
-    gmsh.model.mesh.generate(2)
-    gmsh.model.mesh.setOrder(order)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path, order) as gmsh:
+        geo = gmsh.model.geo
+        for name, far, high in (("upper", 1.5, HIGH), ("lower", -1.5, 0.0)):
+            places = np.linspace(0.0, 0.5, 4 * facets[name] + 1)
+            heights = high * (1.0 - np.cos(2.0 * np.pi * places))
+            size = 0.5 / facets[name]
+            points = [geo.addPoint(x, y, 0, size) for x, y in zip(places, heights, strict=True)]
+            face = geo.addSpline(points)
+            ends = [
+                points[-1],
+                geo.addPoint(0.5, far, 0, 0.2),
+                geo.addPoint(0, far, 0, 0.2),
+                points[0],
+            ]
+            lines = [face, *(geo.addLine(*ends[i : i + 2]) for i in range(3))]
+            geo.mesh.setTransfiniteCurve(face, facets[name] + 1)
+            body = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+            geo.synchronize()
+            gmsh.model.addPhysicalGroup(2, [body], name=name)
+            for line, group in zip(lines, ("face", "right", "far", "left"), strict=True):
+                gmsh.model.addPhysicalGroup(1, [line], name=f"{name}.{group}")
 
 
 @pytest.mark.parametrize("load", [0.5, 0.9, 1.3])
