@@ -163,6 +163,7 @@ way = {"block.top": {"x": 0.05, "y": 0.0, "z": -0.01}}
 solver = Solver(problem, [Step("drag", 1, way)], limits=Limits(cuts=0))
 """,
     "materials": "from anisocontact.bulk import PointState, user_material\n",
+    "python-model": "",
     "meshes": "",
     "point-loads": BLOCK + "from anisocontact.point import PrescribedPath, Push\n",
     "direction-fields": BLOCK
@@ -174,6 +175,7 @@ turned = milled = make_directions("constant", vector=(1, 0, 0))
 }
 #: What has to hold afterwards.
 AFTER = {
+    "python-model": "assert abs(found[0]) < 1e-9 and abs(found[1] + 0.1309) < 1e-3",
     "amplitudes": "assert Solver(Problem(model, materials), steps).cautions == []",
     "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0\n"
     "assert held.last.status.min() > 0 and 0.0 < held.resultant()[0][2] < 0.1\n"

@@ -42,7 +42,9 @@ def test_points_nearly_on_a_line_do_not_hold(
 
 
 @pytest.mark.parametrize(("load", "against"), [(0.4, False), (0.6, True), (-1.0, False)])
-def test_springs_that_carry_loads_are_told_from_those_beside_contact(load, against):
+def test_springs_that_carry_loads_are_told_from_those_beside_contact(
+    load: float, against: bool
+) -> None:
     """Requirement: springs stand against loads where these are more than half of what they carry.
 
     Springs carry -1 along the only free motion, on two nodes.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,24 @@ def _counted(path: Path) -> tuple[int, int, Any]:
         len(parts),
         built.problem.contacts[0].resultant()[0],
     )
+
+
+def test_the_way_to_what_was_refused_grows_shorter() -> None:
+    """An equilibrium at 8 that a whole increment leads to is refused, and parts go there from 0.
+
+    Requirement: each starts where an even way would have brought it, and none once it is reached.
+    Source: by hand, a quarter of the way, then a third of what is left.
+    """
+    predictor: Any = object.__new__(Predictor)
+    predictor._problem = SimpleNamespace(rigid=SimpleNamespace(free=[]))
+    predictor.refuse(8.0, 1.0)
+    of_a_part = SimpleNamespace(part=0.25, last=0.25)
+    assert predictor.state(0.0, None, of_a_part)[0] == pytest.approx(2.0)
+    predictor.accept(0.25)
+    assert predictor.state(2.0, None, of_a_part)[0] == pytest.approx(4.0)
+    predictor.accept(0.75)
+    assert predictor.state(8.0, None, of_a_part)[0] == 8.0
+    assert predictor._ahead is None
 
 
 def test_parts_start_on_the_way_to_what_was_refused(

@@ -272,7 +272,7 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
             writer.accept(accepted)
             keep()
             reports.accepted(accepted)
-            if comm.allreduce(bool(request.why())):
+            if comm.allreduce(bool(request.why())) and not _was_last(built, accepted):
                 where = f"step {accepted.step!r}, increment {accepted.increment}{_part(accepted)}"
                 return _End("stopped", f"{request.why() or 'interrupted'} after {where}")
     except StoppedError as stop:
@@ -287,6 +287,13 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
         writer.keep_failed(error.failed)
         return _End("stopped", str(error), curable=not built.solver.place.begun)
     return _End("done", "")
+
+
+def _was_last(built: Built, accepted: Accepted) -> bool:
+    """Whether an accepted part ends the increments of the last step: nothing is left to stop."""
+    step = built.steps[-1]
+    last = built.solver.place.step == len(built.steps) - 1
+    return last and accepted.increment == step.increments and accepted.done == 1.0
 
 
 def _iteration_line(progress: Progress) -> str:

@@ -118,6 +118,19 @@ def test_ctrl_c_says_how_to_go_on_and_it_does(
     assert same(whole, out)
 
 
+def test_ctrl_c_in_the_last_increment_stops_nothing(
+    monkeypatch, capsys, case, whole, same, stop_after
+):
+    """Requirement: a run of which all increments are done is done, whatever was asked for then."""
+    out, count = case.parent / "out", json.loads((whole / "summary.json").read_text())["steps"]
+    with monkeypatch.context() as patch:
+        stop_after(patch, count)
+        assert main(["run", str(case), "-o", str(out)]) == 0
+    assert "stopped" not in capsys.readouterr().err
+    assert json.loads((out / "summary.json").read_text())["status"] == "done"
+    assert same(whole, out)
+
+
 def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole, same, stop_after):
     """Batch systems send TERM before they kill."""
     out = case.parent / "out"
