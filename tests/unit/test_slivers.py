@@ -1,0 +1,39 @@
+"""Slave nodes of which hardly anything is covered: left to their penalty while that is enough."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.base.fenicsx import MPI
+from anisocontact.contact.trials import Trials
+from anisocontact.interface.states import STATE
+
+
+def test_what_a_penalty_leaves_too_deep_gets_a_multiplier_for_good() -> None:
+    """Four nodes, two of them slivers, of which one lies deeper than the tolerance.
+
+    Requirement: that one alone starts with its pressure as the multiplier, and is a sliver no more,
+    so that the next trial does not leave it to its penalty again; the state before stays.
+    """
+    start = np.zeros(4, dtype=STATE)
+    start["multiplier"] = (1.0, 2.0, 0.0, 0.0)
+    deep = np.array([True, False, False, True])
+    trials: Any = SimpleNamespace(
+        _own=SimpleNamespace(beyond=lambda _: deep),
+        _slight=np.array([False, False, True, True]),
+        _comm=MPI.COMM_SELF,
+        start=start,
+    )
+    step: Any = SimpleNamespace(answer=SimpleNamespace(pressure=np.array([5.0, 6.0, 7.0, 8.0])))
+    found = Trials._held_as_well(trials, step)
+    assert found is not None
+    assert found["multiplier"].tolist() == [1.0, 2.0, 0.0, 8.0]
+    assert trials._slight.tolist() == [False, False, True, False]
+    assert start["multiplier"].tolist() == [1.0, 2.0, 0.0, 0.0]
+    assert Trials._held_as_well(trials, step) is None
