@@ -199,7 +199,7 @@ class Surface(CopiedByArguments):
 
     @property
     def extent(self) -> float:
-        """Largest lengths that it is made of, length: its points are rounded to a share of them.
+        """Largest lengths that it is made of, to a share of which its points are rounded, length.
 
         The same however it is turned about the origin.
 
