@@ -13,6 +13,8 @@ from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Linear, Master
 from anisocontact.contact.semismooth import Semismooth
+from anisocontact.contact.slip_reversals import SlipReversals
+from anisocontact.interface import Response, State
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,7 @@ class Linearised:
         dt: float,
         physical: float,
         active: Active,
+        reversals: SlipReversals,
     ) -> tuple[Answer, Linearised]:
         """A trial with the derivative of a Newton step, and what that is linear about.
 
@@ -87,8 +90,14 @@ class Linearised:
             dt: Time increment.
             physical: Stiffness of an adhesion that is no penalty, stress/length.
             active: Which points are closed.
+            reversals: Which points slide to and fro.
         """
-        state, slip = follows.stiff(step)
+
+        def stiff_answer(state: State) -> Response:
+            answer: Answer = master.answer(state, dt, tangent=False, derivative=True)
+            return answer.snapshot.response
+
+        state, slip = reversals.sticking(step, *follows.stiff(step), stiff_answer)
         stiff = master.answer(state, dt, derivative=True, separate=True)
         stiffness = stiff.stiffness / follows.ratio
         if not follows.tangential:

@@ -25,6 +25,7 @@ from anisocontact.contact.multipliers import (
 )
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
+from anisocontact.contact.slip_reversals import SlipReversals
 from anisocontact.contact.supported_share import SupportedPoints
 from anisocontact.interface import State
 
@@ -69,6 +70,7 @@ class Trials:
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
         self._active = ActiveSet(comm)
+        self._reversals = SlipReversals(comm)
         self._fresh = False
         self._state: State
         self._accepted: Snapshot
@@ -99,6 +101,7 @@ class Trials:
         """
         self.start, self._linear, self._fresh = state, None, False
         self._active = ActiveSet(self._comm)
+        self._reversals.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
@@ -205,7 +208,11 @@ class Trials:
         step = replace(self._step(trial.snapshot), settled=self._settled(trial.snapshot))
         physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
         active = Active.of(step.answer, self._active.kept)
-        answer, self._linear = Linearised.of(semismooth, step, master, trial, dt, physical, active)
+        if self._layer is not None or self.interface.tangential.in_python:
+            self._reversals.forget()
+        answer, self._linear = Linearised.of(
+            semismooth, step, master, trial, dt, physical, active, self._reversals
+        )
         return answer
 
     def _settled(self, trial: Snapshot) -> bool:
@@ -314,6 +321,7 @@ class Trials:
     def go_back(self, mark: Mark) -> None:
         """Take it that the trials since a mark have not been."""
         self.start, self._linear = mark
+        self._reversals.forget()
 
     def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""
