@@ -9,9 +9,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.field_axes import distances
-from anisocontact.contact.symmetric import AT_POINTS, AXIS, PLANES, tractions_of_slip
-from anisocontact.interface import ContactLaw, Interface
-from anisocontact.surfaces import make_surface
+from anisocontact.contact.symmetric import AT_POINTS, AXIS, PLANES, on_plane, tractions_of_slip
+from anisocontact.interface import ContactLaw
 
 #: Difference of a traction from the image of its mirrored one, over the largest, worth a word.
 MIRRORED = 0.01
@@ -87,17 +86,13 @@ def _tractions(
     if len(contact.groups) == 1:
         interface = contact.interface
     else:
-        interface = _on_plane(contact.interface, place, -outward)
+        interface = on_plane(contact.interface, place, -outward)
     second = np.cross(outward, normal)
     both = np.array([[np.cross(second, outward), second]])
     one = place[None]
     here = tractions_of_slip(interface, one, both, contact.facet_size)
     other = tractions_of_slip(interface, one, both * [[[-1.0], [1.0]]], contact.facet_size)
     return here, other - 2.0 * np.outer(other @ normal, normal)
-
-
-def _on_plane(law: ContactLaw, place: Floats, normal: Floats) -> Interface:
-    return Interface(make_surface("plane", point=place, normal=normal), law)
 
 
 def _axes(law: ContactLaw) -> list[Floats]:

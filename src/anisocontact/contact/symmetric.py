@@ -96,8 +96,7 @@ def apart_in_another_plane(
         for i in whole[:: max(len(whole) // PLANES, 1)]:
             one = slice(i, i + 1)
             normal = np.cross(*tangents[i])
-            plane = make_surface("plane", point=reference[i], normal=normal)
-            interface = Interface(plane, law)
+            interface = on_plane(law, reference[i], normal)
             found[one] = tractions_of_slip(interface, reference[one], tangents[one], points.size)
         return found
 
@@ -136,6 +135,11 @@ def _check_normals(
     if any(comm.allgather(bool(np.any(leaves & below)))):
         text = "the normal of the surface is not in the plane of the mesh"
         raise InputError(f"{text}, in which it has to be a line", "master")
+
+
+def on_plane(law: ContactLaw, place: Floats, normal: Floats) -> Interface:
+    """The laws of a facet on a plane through a place, (3,), length, with a normal, (3,)."""
+    return Interface(make_surface("plane", point=place, normal=normal), law)
 
 
 def tractions_of_slip(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,31 @@ def drawn(path: Path, order: int = 1, dim: int = 2) -> Iterator[Any]:
         gmsh.write(str(path))
     finally:
         gmsh.finalize()
+
+
+def fine_at(gmsh: Any, places: Sequence[tuple[int, int, float, float, float]]) -> None:
+    """Let cells be fine within 1.5 around a point of each surface, and grow from there on.
+
+    Args:
+        gmsh: As of `drawn`.
+        places: Surface, point, size of the cells there and far away, and where that is.
+    """
+    field, sizes = gmsh.model.mesh.field, []
+    for surface, point, size, coarse, far in places:
+        away, grown, one = field.add("Distance"), field.add("Threshold"), field.add("Restrict")
+        field.setNumbers(away, "PointsList", [point])
+        field.setNumber(grown, "InField", away)
+        for key, values in (("Size", (size, coarse)), ("Dist", (1.5, far))):
+            for end_of, value in zip(("Min", "Max"), values, strict=True):
+                field.setNumber(grown, key + end_of, value)
+        field.setNumber(one, "InField", grown)
+        field.setNumbers(one, "SurfacesList", [surface])
+        sizes.append(one)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", sizes)
+    field.setAsBackgroundMesh(least)
+    for key in ("FromPoints", "ExtendFromBoundary"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{key}", 0)
 
 
 def graded(facets: int, even: int, size: float, growth: float = 1.35) -> npt.NDArray[np.float64]:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.verification.hard.drawn import drawn
+from tests.verification.hard.drawn import drawn, fine_at
 
 RADIUS, E, NU, MU = 100.0, 1000.0, 0.3, 0.4
 REDUCED = 0.5 * E / (1.0 - NU**2)
@@ -71,7 +71,7 @@ traction = {{{{ "block.right" = {{{{ x = {STRETCH} }}}}, "block.left" = {{{{x = 
 def mesh(path: Path) -> None:
     """Triangles of gmsh, 0.125 long on the cylinder and 0.1 on the block where they touch."""
     with drawn(path) as gmsh:
-        geo, field = gmsh.model.geo, gmsh.model.mesh.field
+        geo = gmsh.model.geo
 
         def points(*places: tuple[float, float]) -> list[int]:
             return [geo.addPoint(x, y, 0.0) for x, y in places]
@@ -101,22 +101,7 @@ def mesh(path: Path) -> None:
             (1, above[3:4], "pad.top"),
         ):
             gmsh.model.addPhysicalGroup(dim, tags, name=name)
-        sizes = []
-        for surface, point, size, far in ((pad, upper[1], 0.125, 12), (block, lower[4], 0.1, 24)):
-            away, grown, one = field.add("Distance"), field.add("Threshold"), field.add("Restrict")
-            field.setNumbers(away, "PointsList", [point])
-            field.setNumber(grown, "InField", away)
-            for key, values in (("Size", (size, far / 6)), ("Dist", (1.5, far))):
-                for end_of, value in zip(("Min", "Max"), values, strict=True):
-                    field.setNumber(grown, key + end_of, value)
-            field.setNumber(one, "InField", grown)
-            field.setNumbers(one, "SurfacesList", [surface])
-            sizes.append(one)
-        least = field.add("Min")
-        field.setNumbers(least, "FieldsList", sizes)
-        field.setAsBackgroundMesh(least)
-        for key in ("FromPoints", "ExtendFromBoundary"):
-            gmsh.option.setNumber(f"Mesh.MeshSize{key}", 0)
+        fine_at(gmsh, [(pad, upper[1], 0.125, 2, 12), (block, lower[4], 0.1, 4, 24)])
 
 
 def shear(x: Any, eccentric: float) -> Any:

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.drawn import drawn, fine_at
 from tests.verification.hard.test_published_fretting import MU, RADIUS, REDUCED, E
 from tests.verification.hard.test_published_fretting import mesh as cylinder
 
@@ -70,40 +71,24 @@ def step(name: str, load: str, free: str = "") -> str:
 
 def wedge(path: Path) -> None:
     """Triangles of gmsh, 0.125 and 0.1 long where they touch."""
-    gmsh = pytest.importorskip("gmsh")
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    geo, field, sizes = gmsh.model.geo, gmsh.model.mesh.field, []
     upper = [(-12, 12 * SLOPE), (0, 0), (12, 12 * SLOPE), (12, 12), (-12, 12)]
     lower = [(-24, 0), (-24, -24), (24, -24), (24, 0), (0, 0)]
     pad, block = {"nose": [0, 1], "top": [3]}, {"bottom": [1], "top": [3, 4]}
-    for name, corners, groups, tip, size in (
-        ("pad", upper, pad, 1, 0.125),
-        ("block", lower, block, 4, 0.1),
-    ):
-        points = [geo.addPoint(x, y, 0) for x, y in corners]
-        lines = [geo.addLine(points[i], points[(i + 1) % 5]) for i in range(5)]
-        body = geo.addPlaneSurface([geo.addCurveLoop(lines)])
-        geo.synchronize()
-        gmsh.model.addPhysicalGroup(2, [body], name=name)
-        for group, edges in groups.items():
-            gmsh.model.addPhysicalGroup(1, [lines[i] for i in edges], name=f"{name}.{group}")
-        away, grown, one = field.add("Distance"), field.add("Threshold"), field.add("Restrict")
-        field.setNumbers(away, "PointsList", [points[tip]])
-        field.setNumber(grown, "InField", away)
-        for key, value in (("SizeMin", size), ("SizeMax", 4), ("DistMin", 1.5), ("DistMax", 20)):
-            field.setNumber(grown, key, value)
-        field.setNumber(one, "InField", grown)
-        field.setNumbers(one, "SurfacesList", [body])
-        sizes.append(one)
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", sizes)
-    field.setAsBackgroundMesh(least)
-    for key in ("FromPoints", "ExtendFromBoundary"):
-        gmsh.option.setNumber(f"Mesh.MeshSize{key}", 0)
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
-    gmsh.finalize()
+    with drawn(path) as gmsh:
+        geo, fine = gmsh.model.geo, []
+        for name, corners, groups, tip, size in (
+            ("pad", upper, pad, 1, 0.125),
+            ("block", lower, block, 4, 0.1),
+        ):
+            points = [geo.addPoint(x, y, 0) for x, y in corners]
+            lines = [geo.addLine(points[i], points[(i + 1) % 5]) for i in range(5)]
+            body = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+            geo.synchronize()
+            gmsh.model.addPhysicalGroup(2, [body], name=name)
+            for group, edges in groups.items():
+                gmsh.model.addPhysicalGroup(1, [lines[i] for i in edges], name=f"{name}.{group}")
+            fine.append((body, points[tip], size, 4, 20))
+        fine_at(gmsh, fine)
 
 
 def shear_of(run: Any, pad_is_slave: bool) -> tuple[Any, Any, Any]:
