@@ -338,3 +338,18 @@ def test_an_angle_between_facets_is_cut_once():
         False,
         True,
     ]
+
+
+def test_parts_stay_as_large_as_a_refusal_lets_them():
+    """Requirement: what was refused in a part of this size is not tried again while points turn on.
+
+    A wheel that rolls over facets turns by less in each of two parts than by half of what it turns
+    in one: every increment was tried as a whole, refused and cut. Once points turn by much less in
+    a part, whole increments are.
+    """
+    watch = TurnWatch()
+    assert _refuses(watch, 1.0, 18.0)
+    assert not _refuses(watch, 0.5, 7.0)
+    assert watch.allowed(0.5) == pytest.approx(15.0 / 18.0)
+    assert not _refuses(watch, 0.5, 4.0)
+    assert watch.allowed(0.5) == 1.0

@@ -22,6 +22,9 @@ PRESCRIBED = math.radians(45.0)
 #: least where it does not depend on the size: where a point passes from one facet to another one at
 #: an angle, in this part of what was cut or in a later one. On surfaces, which have none, more.
 _KINK, _ON_SURFACES, _SMALLER = 0.6, 0.75, 0.5
+#: Turn over size of a part, over that of one that was refused, from which on the next one is no
+#: larger than its refusal lets it be: points turn by more in the second half of a part.
+_AS_FAST = 0.5
 
 
 @dataclass(frozen=True)
@@ -92,13 +95,13 @@ class TurnWatch:
 
     def begin(self) -> None:
         """Forget what another step has shown."""
-        self.kink, self._angle = 0.0, 0.0
+        self.kink, self._angle, self._size = 0.0, 0.0, 0.0
         self.refused = (0.0, 0.0)
 
     def objection(self, problem: Problem) -> Refusal | None:
         """Why the trial of a part is to be cut; None where it may be accepted. Collective."""
         turned = largest_turn(problem)
-        self._angle = turned.angle
+        self._angle, self._size = turned.angle, problem.dt
         angle, size = self.refused
         kept = _KINK if turned.meshed else _ON_SURFACES
         if turned.angle > kept * angle and problem.dt <= _SMALLER * size:
@@ -110,6 +113,9 @@ class TurnWatch:
 
     def allowed(self, part: float) -> float:
         """Size of the next part after one that was accepted, share of an increment."""
-        if self._angle <= 0.5 * FOLLOWED or self._angle <= self.kink:
+        if self._angle <= self.kink:
             return 1.0
-        return part * FOLLOWED / self._angle
+        angle, size = self.refused
+        if angle > self.kink and self._angle * size > _AS_FAST * angle * self._size:
+            return part * size / self._size * FOLLOWED / angle
+        return 1.0 if self._angle <= 0.5 * FOLLOWED else part * FOLLOWED / self._angle
