@@ -21,6 +21,7 @@ from anisocontact.contact.initial import check_start
 from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.options import ContactOptions
+from anisocontact.contact.rounded_forces import levers
 from anisocontact.contact.side_of_master import SideOfMaster
 from anisocontact.contact.trials import Trials
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response
@@ -280,8 +281,19 @@ class ContactPair:
         distance = np.linalg.norm(self.current.points, axis=1) + self.master.extent
         if self.master.body is not None:
             distance += np.linalg.norm(self.master.body.position)
-        least = self.trials.penalty * self.current.areas * self.meeting()
-        return float(np.linalg.norm(np.maximum(self.answer.stiffness, least) * distance))
+        current = self.current
+        slopes = np.maximum(
+            self.answer.stiffness, self.trials.penalty * current.areas * self.meeting()
+        )
+        force = np.linalg.norm(current.forces, axis=1)
+        return float(np.linalg.norm(levers(slopes, distance, force, self._stiffness)))
+
+    def _stiffness(self) -> Floats:
+        """How stiff points are by laws and bodies, (n,), force/length."""
+        interface, penalty = self.interface, self.trials.penalty
+        slip = interface.slip_stiffness(self._dt)
+        largest = max(penalty, interface.penalties()[0], slip, self.body_stiffness)
+        return np.asarray(largest * self.current.areas)
 
     def commit(self) -> None:
         """Make the trial the history."""
