@@ -320,6 +320,7 @@ class Problem(ComposedSystem, Uncopied):
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
             self.attached.add_force(nodal, load)
+            self.rigid.add_face_loads(load)
             self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:

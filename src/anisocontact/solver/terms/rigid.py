@@ -13,6 +13,7 @@ from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.rigid import RigidBody
 from anisocontact.solver.terms.drive import Drive
+from anisocontact.solver.terms.face_loads import add_face_loads
 from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
@@ -191,6 +192,12 @@ class RigidBodies(Term):
         """Loads of the free bodies as the rows have them, (size,), force."""
         parts = [self._drives[b].load(self._load_factor) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
+
+    def add_face_loads(self, out: Floats) -> None:
+        """Add loads on bodies with faces to the local nodes of these, (nodes, 3); collective."""
+        for body, faces in self.coupled.items():
+            if faces:
+                add_face_loads(faces, self._drives[body].load(self._load_factor), out, self._comm)
 
     def load(self, body: RigidBody, fraction: float) -> Floats:
         """Force and moment on a body at a fraction of the step, (6,)."""
