@@ -183,6 +183,21 @@ def test_cycle_of_two_is_given_up():
     assert result.iterations < 8
 
 
+def test_cycle_of_three_is_given_up():
+    """States that follow one another round and round are seen after three periods.
+
+    Full steps lead from 4 to 1, to 2 and to 4 again: the residual is what is left of the first two,
+    and what lies between the last and the first, each with the slope one of the tangent.
+    """
+    follows = {4.0: 1.0, 1.0: 2.0, 2.0: 4.0}
+    system = Jump(lambda a: a - follows[a])
+    newton = _newton(system)
+    result = newton.solve(_at(system, 4.0, 0.0), full_steps=True)
+    newton.close()
+    assert result.residuals == [3.0, 1.0, 2.0] * 3
+    assert result.reason.startswith("no convergence")
+
+
 class Floating(Valley):
     """Nothing pushes: 1e-9 is the rounding of forces that cancel."""
 

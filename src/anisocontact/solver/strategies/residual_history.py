@@ -22,8 +22,10 @@ IDLE, IDLE_OVER = 0.5, 5
 NEARER = 0.95
 #: Corrections after which only a residual that falls is waited for.
 PATIENCE = 25
-#: Residuals that repeat every second time, to this share of them, are those of a cycle.
+#: Residuals that repeat every second time, to this share of them, are those of a cycle; so are
+#: such as repeat after some more, up to the longest, three times with as many points in contact.
 CYCLE, SAME = 5, 1e-3
+LONGEST, TIMES = 6, 3
 
 
 class ResidualHistory:
@@ -129,8 +131,18 @@ class ResidualHistory:
         return farther and min(known[-IDLE_OVER:]) < NEARER * min(known[:-IDLE_OVER])
 
     def _cycles(self) -> bool:
-        """Whether full steps go to and fro between two states: nothing will end that."""
-        return len(self.residuals) >= CYCLE and repeats(self.residuals[-CYCLE:])
+        """Whether full steps go round a few states: nothing will end that."""
+        if len(self.residuals) >= CYCLE and repeats(self.residuals[-CYCLE:]):
+            return True
+        return any(self._repeats_after(period) for period in range(CYCLE - 2, LONGEST + 1))
+
+    def _repeats_after(self, period: int) -> bool:
+        """Whether residuals and numbers of points that touch and stick are those before again."""
+        count = TIMES * period
+        if len(self.residuals) < count or not repeats(self.residuals[-count:], period):
+            return False
+        counts = np.array([self._touching[-count:], self._sticking[-count:]])
+        return bool(np.all(counts[:, period:] == counts[:, :-period]))
 
     def _stuck(self) -> bool:
         """Whether a line search gains next to nothing."""
@@ -138,8 +150,12 @@ class ResidualHistory:
         return len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
 
 
-def repeats(residuals: Sequence[float]) -> bool:
-    """Whether each of some residuals is the last but one before it, to `SAME` of it.
+def repeats(residuals: Sequence[float], period: int = 2) -> bool:
+    """Whether each of some residuals is the one a period before it, to `SAME` of it.
+
+    Args:
+        residuals: The residuals.
+        period: After how many corrections; the last but one if left out.
 
     Example:
         >>> repeats([0.3, 0.2, 0.3, 0.2]), repeats([0.3, 0.2, 0.3, 0.19])
@@ -147,4 +163,4 @@ def repeats(residuals: Sequence[float]) -> bool:
     """
     last = np.array(residuals)
     with np.errstate(invalid="ignore"):  # far off they are infinite
-        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
+        return bool(np.all(np.abs(last[period:] - last[:-period]) <= SAME * last[period:]))
