@@ -35,8 +35,9 @@ from anisocontact.solver.system.parts import ProblemParts
 
 #: Share of the touching points that have to begin or end contact or slip.
 CHANGED = 0.05
-#: Cosine of the angle of friction before and after from which on it has been reversed.
-BACK = -0.5
+#: Cosine of the angle of friction before and after from which on it has been reversed; share of the
+#: pressures below which it is none, but what equilibrium leaves.
+BACK, NONE = -0.5, 1e-6
 #: What the laws have to add to the mean of both ends, over the work so far: what would warn.
 COARSE = LARGE
 #: Share of the work so far by which a point may change the rule, and points at which it ends.
@@ -235,12 +236,15 @@ class ContactWork:
 
 def _reversed(contact: Contact) -> Flags:
     """Points whose friction has turned round within an increment, (n,)."""
-    sides = []
+    sides, sizes, pressures = [], [], []
     for response in (contact.last, contact.trial):
         along = np.einsum("nd,nd->n", response.traction, response.normal)
         sides.append(response.traction - along[:, None] * response.normal)
-    sizes = np.linalg.norm(sides[0], axis=1) * np.linalg.norm(sides[1], axis=1)
-    return np.asarray(np.einsum("nd,nd->n", *sides) < BACK * sizes)
+        sizes.append(np.linalg.norm(sides[-1], axis=1))
+        pressures.append(np.abs(along))
+    there = np.minimum(*sizes) > NONE * np.maximum(*pressures)
+    turned = np.einsum("nd,nd->n", *sides) < BACK * sizes[0] * sizes[1]
+    return np.asarray(there & turned)
 
 
 def _pressures(contact: Contact) -> tuple[float, float, float]:
