@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import inspect
+import pickle
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -259,3 +262,47 @@ def test_value_objects_keep_what_they_were_given():
     assert [step.displacement["block.top"]["z"] for step in steps] == [0.0, 1.0, 2.0]
     assert [turn.point[0] for turn in turns] == [0.0, 1.0, 2.0]
     assert [place.move[0] for place in places] == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda step: step.displacement["block.top"].update(z=-1.0),
+        lambda step: step.displacement["block.top"].__setitem__("w", "up"),
+        lambda step: step.traction.setdefault("block.bottom", {"z": 1.0}),
+        lambda step: step.motion["tool"].pop("rx"),
+        lambda step: step.rotation.clear(),
+    ],
+)
+def test_nobody_writes_into_a_step(write: Any) -> None:
+    """Requirement: what a step has was checked when it was made, and stays that.
+
+    Source: by hand. A script that wrote an axis "w" or a text into the dictionary of a step, in the
+    middle of a run, was not told: it was taken, or left out, without a word.
+    """
+    led: dict[str, dict[str, float | None]] = {"block.top": {"z": 0.0}}
+    turn = {"disc": anisocontact.Turn(axis=[0, 0, 1], angle=0.1, point=[0, 0, 1])}
+    step = anisocontact.Step("drag", 1, led, motion={"tool": {"rx_deg": 30.0}}, rotation=turn)
+    before = repr(step)
+    with pytest.raises(InputError, match=r"^read only, .* dataclasses.replace$"):
+        write(step)
+    with pytest.raises(TypeError, match="item assignment"):
+        step.rotation["disc"].point[2] = 0.0  # type: ignore[index]
+    assert repr(step) == before
+
+
+def test_a_step_is_copied_and_changed_by_making_another() -> None:
+    """Requirement: copies, pickles and `dataclasses.replace` of a step are steps like others."""
+    step = anisocontact.Step("drag", 1, {"block.top": {"z": 0.0}}, motion={"tool": {"x": 1.0}})
+    for copied in (copy.deepcopy(step), pickle.loads(pickle.dumps(step))):
+        assert copied == step
+        with pytest.raises(InputError, match=r"^read only"):
+            copied.displacement["block.top"]["z"] = 1.0
+    other = dataclasses.replace(step, displacement=step.displacement | {"block.bottom": {"x": 0}})
+    assert list(other.displacement) == ["block.top", "block.bottom"]
+    way = np.zeros(3)
+    placed = anisocontact.Placement(move=way)
+    with pytest.raises(ValueError, match="read-only"):
+        placed.move[0] = 1.0  # type: ignore[index]
+    way[0] = 1.0
+    assert placed.move[0] == 0.0

@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.read_only import read_only
 
 #: What is said of types that are known by another name, or hold several things.
 _CALLED: Mapping[Any, str] = {
@@ -37,8 +38,8 @@ _CALLED: Mapping[Any, str] = {
 def typed[F: Callable[..., Any]](made: F) -> F:
     """Let a function, or the constructor of a class, refuse arguments of other types.
 
-    A dataclass that is frozen has lists, dictionaries and arrays of its own, whatever a script goes
-    on to write into those that it gave.
+    A dataclass that is frozen has what lists, dictionaries and arrays held, whatever a script goes
+    on to write into those that it gave, and nobody writes into its own.
 
     Args:
         made: The function or class; with annotations that are not `Any` or `object`.
@@ -93,18 +94,11 @@ def _checked(function: Any) -> Any:
 def _keeping(init: Any) -> Any:
     @wraps(init)
     def kept(self: Any, *args: Any, **kwargs: Any) -> None:
-        init(self, *map(_own, args), **{name: _own(value) for name, value in kwargs.items()})
+        init(self, *args, **kwargs)
+        for field in dataclasses.fields(self):
+            object.__setattr__(self, field.name, read_only(getattr(self, field.name)))
 
     return kept
-
-
-def _own(value: Any) -> Any:
-    """What nobody else writes into: copies of lists, dictionaries and arrays, nested or not."""
-    if isinstance(value, np.ndarray):
-        return value.copy()
-    if type(value) is list:
-        return [_own(one) for one in value]
-    return {k: _own(one) for k, one in value.items()} if type(value) is dict else value
 
 
 def _binds(function: Any, args: Any, kwargs: Any) -> bool:
