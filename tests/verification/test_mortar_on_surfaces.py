@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.surfaces import make_surface
+from anisocontact.surfaces import Surface, make_surface
 
 DOWN = {"x": 0.0, "y": 0.0, "z": -0.06}
 
@@ -76,13 +77,42 @@ def test_a_node_below_a_pole() -> None:
     np.testing.assert_allclose(forces[0], forces[1], atol=1e-9 * forces[0][2])
 
 
-def test_a_node_that_sticks_below_a_pole() -> None:
-    """An ellipsoid with its pole on a node that sticks presses like one with it elsewhere.
+def _ellipsoid(pole_below: bool) -> Surface:
+    """With its pole on the middle of the block, or at its side."""
+    more: dict[str, Any] = (
+        {"semi_axes": (6, 5, 4), "axis": (0, 0, 1), "start": (1, 0.4, 0)}
+        if pole_below
+        else {"semi_axes": (4, 6, 5), "axis": (0.4, -1, 0), "start": (0, 0, 1)}
+    )
+    return make_surface("ellipsoid", centre=(0, 0, -4), **more)
+
+
+def _dome(pole_below: bool) -> Surface:
+    """A ball as an arc turned about the vertical, far above its point, or the sphere."""
+    if not pole_below:
+        return make_surface("sphere", centre=(0, 0, -4), radius=4, axis=(1, 0, 0))
+    arc: dict[str, Any] = {"profile": [(4, 96), (0, 100)], "arcs": [np.pi / 2]}
+    return make_surface("revolution", point=(0, 0, -100), axis=(0, 0, 1), **arc)
+
+
+def _spline_dome(pole_below: bool) -> Surface:
+    """The same arc as a spline from the axis on, or the sphere."""
+    if not pole_below:
+        return _dome(False)
+    angle = np.linspace(0.0, 0.3, 20)
+    points = np.stack([4.0 * np.sin(angle), 4.0 * np.cos(angle) - 4.0], axis=1)
+    turned: dict[str, Any] = {"profile": points, "spline": True, "inside": True}
+    return make_surface("revolution", point=(0, 0, 0), axis=(0, 0, 1), **turned)
+
+
+@pytest.mark.parametrize("tool", [_ellipsoid, _dome, _spline_dome])
+def test_a_node_that_sticks_below_a_pole(tool: Callable[[bool], Surface]) -> None:
+    """A surface with its pole on a node that sticks presses like one with it elsewhere.
 
     Requirement: the same force to 1e-7, ten times what Newton's method leaves of it, in four
     increments of at most 15 corrections. The place of contact went around the pole at 1e-8 of the
     size, so that no increment converged: the adhesion felt a slip of that size.
-    Source: coordinates of the ellipsoid do not matter.
+    Source: coordinates of the surface do not matter.
     """
     model = build_box({"block": BoxSpec((-0.5, -0.5, 0), (1, 1, 0.5), (4, 4, 1))})
     along = make_directions("constant", vector=(1.0, 0.3, 0.0))
@@ -92,13 +122,12 @@ def test_a_node_that_sticks_below_a_pole() -> None:
         Friction(coefficients=0.2),
     )
     forces = []
-    for axes, pole, start in (
-        ((6.0, 5.0, 4.0), (0, 0, 1), (1, 0.4, 0)),
-        ((4.0, 6.0, 5.0), (0.4, -1, 0), (0, 0, 1)),
-    ):
-        tool = make_surface("ellipsoid", centre=(0, 0, -4), semi_axes=axes, axis=pole, start=start)
+    for pole_below in (True, False):
+        master = tool(pole_below)
         augmentation = Augmentation(tangential=False)
-        contact = Contact(model, "block.bottom", tool, law, mortar=True, augmentation=augmentation)
+        contact = Contact(
+            model, "block.bottom", master, law, mortar=True, augmentation=augmentation
+        )
         bodies = {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}
         solver = Solver(Problem(model, bodies, [contact]), [Step("press", 4, {"block.top": DOWN})])
         assert max(part.iterations for part in solver.run()) <= 15

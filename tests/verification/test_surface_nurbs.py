@@ -158,6 +158,42 @@ def test_pole(surfaces: Any, height: float) -> None:
     assert np.isfinite(p.dxi_dx).all()
 
 
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (1.5, 1.25, 1.0)])
+@pytest.mark.parametrize("end", [-1.0, 1.0])
+def test_near_a_pole(scale: tuple[float, float, float], end: float) -> None:
+    """Requirement: on the axis and right beside it, above and below the surface, a patch has the
+    gap of the ellipsoid, and from 1e-8 of its size on the derivative of the gap, 1e-7.
+
+    The foot keeps off the pole by 1e-8 of the range; nearer to the axis rounding is divided by the
+    distance to that. Source: the analytic ellipsoid. The last steps of the search ended on the
+    pole, where there is no normal: the gap of a node below it was no number; up to 1e-6 from the
+    axis rounding made an edge of the coordinate around it, beyond which nothing is in contact.
+    """
+    square = np.sqrt(0.5)
+    sides = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    rise = [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)]
+    net = [(x * r, y * r, z) for x, y in sides for r, z in rise]
+    weight = np.array([1, square] * 4 + [1])
+    patch = make_surface(
+        "nurbs",
+        degrees=(2, 2),
+        knots_1=(0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4),
+        knots_2=(0, 0, 0, 1, 1, 2, 2, 2),
+        points=np.array(net) * scale,
+        weights=np.outer(weight, weight[:5]).ravel(),
+    )
+    ellipsoid = make_surface("ellipsoid", centre=(0, 0, 0), semi_axes=scale, axis=(0, 0, 1))
+    aside = [0.0, 1e-15, 1e-12, 1e-10, 1e-9, 3e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6, 1e-5]
+    gaps = [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 0.1, -0.1]
+    x = np.array([(0.6 * a, 0.8 * a, end * (scale[2] + g)) for a in aside for g in gaps])
+    p, q = patch.project(x), ellipsoid.project(x)
+    assert set(p.status) <= {INTERIOR, SINGULAR}
+    np.testing.assert_allclose(p.gap, q.gap, atol=1e-13)
+    clear = np.repeat(np.array(aside) >= 1e-8, len(gaps))
+    np.testing.assert_allclose(p.dgap_dx[clear], q.dgap_dx[clear], atol=1e-7)
+    assert np.isfinite(p.dgap_dx).all() and np.isfinite(p.dxi_dx).all()
+
+
 def test_axis_is_ambiguous(surfaces: Any) -> None:
     """Requirement: on the axis every angle is as near; a status, and the same answer always."""
     sample = sample_named(surfaces, "nurbs-cylinder")

@@ -139,9 +139,15 @@ class NurbsSearch {
     return length > 0.0 ? std::abs(k == 0 ? l.g1 : l.g2) / length : 0.0;
   }
 
+  /// Rounding of `along`: the direction of a line that shrinks towards a pole is off by more.
+  double blurred(const Local& l, std::size_t k) const noexcept {
+    const double length = (domain_.upper[k] - domain_.lower[k]) * (k == 0 ? l.r1 : l.r2).norm();
+    return rounding_ * (1.0 + l.r.norm() / length);
+  }
+
   /// A minimum on the border of two pieces is that of one of them to rounding, and one that is
   /// hardly a minimum cannot be found better by distances: Newton steps for a normal x - rho, which
-  /// know nothing of borders, finish it.
+  /// know nothing of borders, finish it. They keep off poles as pieces do.
   void polish() noexcept {
     Local l = local(surface_.jet(xi_[0], xi_[1]), x_);
     for (int step = 0; step < 3; ++step) {
@@ -149,7 +155,8 @@ class NurbsSearch {
       const Pair to{xi_[0] - (l.h22 * l.g1 - l.h12 * l.g2) / d,
                     xi_[1] - (l.h11 * l.g2 - l.h12 * l.g1) / d};
       for (std::size_t k = 0; k < 2; ++k)
-        if (!domain_.periodic[k] && !(domain_.lower[k] <= to[k] && to[k] <= domain_.upper[k]))
+        if (!domain_.periodic[k] &&
+            !(domain_.lower[k] + cap(k, 0) <= to[k] && to[k] <= domain_.upper[k] - cap(k, 1)))
           return;
       const Local next = local(surface_.jet(to[0], to[1]), x_);
       if (!(along(next, 0) + along(next, 1) < along(l, 0) + along(l, 1))) return;
@@ -169,8 +176,8 @@ class NurbsSearch {
     bool pole = false;
     for (std::size_t k = 0; k < 2; ++k) {
       const bool at_pole = is_pole(k);
-      const double allowed = (at_pole ? pole_tolerance : normal_tolerance) * l.r.norm() + rounding_;
-      foot.fixed[k] = along(l, k) > allowed;
+      const double allowed = (at_pole ? pole_tolerance : normal_tolerance) * l.r.norm();
+      foot.fixed[k] = along(l, k) > allowed + blurred(l, k);
       pole = pole || at_pole;
     }
     const auto count = static_cast<std::int64_t>(foot.fixed[0]) + foot.fixed[1];
@@ -181,10 +188,13 @@ class NurbsSearch {
   }
 
   bool is_pole(std::size_t k) const noexcept {
-    const double lower = domain_.lower[k], upper = domain_.upper[k];
-    const double cap = 2.0 * surface::polar_cap * (upper - lower);
-    return (pieces_.pole[k][0] && xi_[k] - lower < cap) ||
-           (pieces_.pole[k][1] && upper - xi_[k] < cap);
+    return xi_[k] - domain_.lower[k] < 2.0 * cap(k, 0) ||
+           domain_.upper[k] - xi_[k] < 2.0 * cap(k, 1);
+  }
+
+  /// How far a coordinate keeps off one of its ends, where that is a pole.
+  double cap(std::size_t k, std::size_t end) const noexcept {
+    return pieces_.pole[k][end] ? surface::polar_cap * (domain_.upper[k] - domain_.lower[k]) : 0.0;
   }
 
   bool focal(const surface::Jet<double>& jet) const noexcept {

@@ -34,10 +34,11 @@ struct Foot {
 /// 1e-8 of the size and the gap by its square, while derivatives, whose rounding errors grow with
 /// the reciprocal, keep seven digits.
 inline constexpr double polar_cap = 1e-8;
-/// The same where jets are sines and cosines, which lose digits of curvatures alone. What is nearest
-/// to a point that moves around a pole goes around it at this distance: slips that feel it in a stiff
-/// adhesion, where equilibrium is on the pole, let no increment converge at 1e-8.
-inline constexpr double trigonometric_cap = 1e-12;
+/// The same where jets are sines and cosines, or a profile whose heights count from its pole, which
+/// lose digits of curvatures alone. What is nearest to a point that moves around a pole goes around it
+/// at this distance: slips that feel it in a stiff adhesion, where equilibrium is on the pole, let no
+/// increment converge at 1e-8.
+inline constexpr double fine_polar_cap = 1e-12;
 
 /// 1 - xi^3 kappa (kappa a principal curvature) below which x counts as a centre of curvature: the
 /// derivative of the closest point is its reciprocal and has no correct digit much below.

@@ -46,6 +46,9 @@ class Frame {
   /// first to the second axis runs the other way, and rho_1 x rho_2 points to the other side.
   Frame mirrored() const { return {origin_, {axes_[0], -axes_[1], axes_[2]}}; }
 
+  /// The frame with its origin moved along its third axis.
+  Frame raised(double height) const { return {origin_ + height * axes_[2], axes_}; }
+
   const Vec3<double>& origin() const { return origin_; }
   const Vec3<double>& axis(std::size_t i) const { return axes_[i]; }
 

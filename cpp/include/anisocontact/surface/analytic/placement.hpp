@@ -66,7 +66,7 @@ struct Polar {
 
 /// Foot at a longitude and latitude, kept off the poles.
 inline Foot polar_foot(double longitude, double latitude) {
-  constexpr double last = 0.5 * pi - trigonometric_cap;
+  constexpr double last = 0.5 * pi - fine_polar_cap;
   if (std::abs(latitude) <= last) return {{longitude, latitude}, Status::interior};
   return {{longitude, std::copysign(last, latitude)}, Status::singular};
 }

@@ -1,6 +1,8 @@
 #pragma once
 // Profile of a surface of revolution: straight segments and arcs, or a smooth curve through points.
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -123,45 +125,94 @@ class Segments {
 
 /// Cubic spline through points, by their chords: without a knot at the second and the last but one
 /// [de Boor 2001, ch. IV]; where the last point is the first, the two ends have the same derivatives.
-inline Profile spline_through(const std::vector<Eigen::Vector2d>& points) {
-  const std::size_t n = points.size(), degree = std::min<std::size_t>(3, n - 1);
-  const bool closed = n > 3 && points.front() == points.back();
-  std::vector<double> at(n, 0.0);
-  for (std::size_t i = 1; i < n; ++i) {
-    const double chord = (points[i] - points[i - 1]).norm();
-    if (!(chord > 0.0)) throw std::invalid_argument("profile has a segment without length");
-    at[i] = at[i - 1] + chord;
+///
+/// An end on the axis that is nearly at a right angle to it is at one, as the end of a curve that goes on
+/// as its mirror image beyond the axis: z' = 0 and r'' = 0 there. Else it has a tip.
+class SplineProfile {
+ public:
+  explicit SplineProfile(const std::vector<Eigen::Vector2d>& points)
+      : points_(points), closed_(points.size() > 3 && points.front() == points.back()) {
+    at_.assign(points.size(), 0.0);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double chord = (points[i] - points[i - 1]).norm();
+      if (!(chord > 0.0)) throw std::invalid_argument("profile has a segment without length");
+      at_[i] = at_[i - 1] + chord;
+    }
+    const double length = at_.back();
+    for (double& t : at_) t /= length;
+    for (auto* end : {&points_.front(), &points_.back()})
+      if (std::abs((*end)[0]) <= 1e-12 * length) (*end)[0] = 0.0;
   }
-  const double length = at.back();
-  for (double& t : at) t /= length;
-  std::vector<double> knots(degree + 1, 0.0);
-  const std::size_t skipped = closed ? 1 : 2;
-  for (std::size_t i = skipped; i + skipped < n; ++i) knots.push_back(at[i]);
-  knots.insert(knots.end(), degree + 1, at.back());
-  Profile made{Knots(degree, std::move(knots), "profile"), {}};
-  const auto size = static_cast<Eigen::Index>(made.along.count());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size), values(size, 2);
-  values.setZero();
-  const auto add = [&](Eigen::Index row, double t, std::size_t derivative, double sign) {
-    const std::size_t span = made.along.span(t);
-    const auto basis = made.along.basis(span, t);
-    for (std::size_t k = 0; k <= degree; ++k)
-      matrix(row, static_cast<Eigen::Index>(span - degree + k)) += sign * basis[derivative][k];
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    add(static_cast<Eigen::Index>(i), at[i], 0, 1.0);
-    values.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+
+  Profile take() const {
+    Profile made = through({false, false});
+    if (closed_ || points_.size() < 3) return made;
+    const std::array<bool, 2> round{is_round(made, 0), is_round(made, 1)};
+    return round[0] || round[1] ? through(round) : made;
   }
-  for (std::size_t d = 1; closed && d <= 2; ++d) {
-    add(static_cast<Eigen::Index>(n + d - 1), 0.0, d, 1.0);
-    add(static_cast<Eigen::Index>(n + d - 1), at.back(), d, -1.0);
+
+ private:
+  /// Sine of the angle between the end of a spline and a plane across the axis, 8 degrees, up to which
+  /// it is meant to be round there: four points of a dome leave it up to 4 degrees, tips have more.
+  static constexpr double blunt = 0.139;
+
+  /// Whether an end is on the axis and nearly at a right angle to it.
+  bool is_round(const Profile& made, std::size_t end) const {
+    const auto& c = made.control;
+    const Eigen::Vector3d& tip = end == 0 ? c.front() : c.back();
+    const Eigen::Vector3d along = (end == 0 ? c[1] : c[c.size() - 2]) - tip;
+    return tip[0] == 0.0 && std::abs(along[1]) < blunt * along.norm();
   }
-  const Eigen::MatrixXd control = matrix.partialPivLu().solve(values);
-  for (Eigen::Index i = 0; i < size; ++i)
-    made.control.emplace_back(control(i, 0), control(i, 1), 1.0);
-  made.control.front().head<2>() = points.front();
-  made.control.back().head<2>() = points.back();
-  return made;
-}
+
+  /// The spline, round at ends on the axis or without conditions there.
+  Profile through(const std::array<bool, 2>& round) const {
+    const std::size_t n = points_.size();
+    const auto ends = static_cast<std::size_t>(round[0]) + static_cast<std::size_t>(round[1]);
+    const std::size_t degree = std::min<std::size_t>(3, n - 1 + ends);
+    std::vector<double> knots(degree + 1, 0.0);
+    const std::size_t first = closed_ || round[0] ? 1 : 2, last = closed_ || round[1] ? 1 : 2;
+    for (std::size_t i = first; i + last < n; ++i) knots.push_back(at_[i]);
+    knots.insert(knots.end(), degree + 1, at_.back());
+    Profile made{Knots(degree, std::move(knots), "profile"), {}};
+    const Eigen::VectorXd r = component(made.along, 0, round), z = component(made.along, 1, round);
+    for (Eigen::Index i = 0; i < r.size(); ++i) made.control.emplace_back(r[i], z[i], 1.0);
+    made.control.front().head<2>() = points_.front();
+    made.control.back().head<2>() = points_.back();
+    if (round[0]) made.control[1][1] = points_.front()[1];
+    if (round[1]) made.control[made.control.size() - 2][1] = points_.back()[1];
+    return made;
+  }
+
+  /// Control points of r or z, which is odd or even across the axis at a round end.
+  Eigen::VectorXd component(const Knots& along, Eigen::Index which,
+                            const std::array<bool, 2>& round) const {
+    const auto size = static_cast<Eigen::Index>(along.count());
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+    const auto add = [&](Eigen::Index row, double t, std::size_t derivative, double sign) {
+      const std::size_t span = along.span(t), degree = along.degree();
+      const auto basis = along.basis(span, t);
+      for (std::size_t k = 0; k <= degree; ++k)
+        matrix(row, static_cast<Eigen::Index>(span - degree + k)) += sign * basis[derivative][k];
+    };
+    Eigen::Index row = 0;
+    for (; row < static_cast<Eigen::Index>(points_.size()); ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      add(row, at_[i], 0, 1.0);
+      values[row] = points_[i][which];
+    }
+    for (std::size_t d = 1; closed_ && d <= 2; ++d, ++row) {
+      add(row, 0.0, d, 1.0);
+      add(row, at_.back(), d, -1.0);
+    }
+    for (std::size_t end = 0; end < 2; ++end)
+      if (round[end]) add(row++, end == 0 ? 0.0 : at_.back(), which == 0 ? 2 : 1, 1.0);
+    return matrix.partialPivLu().solve(values);
+  }
+
+  std::vector<Eigen::Vector2d> points_;
+  std::vector<double> at_;  ///< parameter of each point
+  bool closed_;
+};
 
 }  // namespace anisocontact::surface

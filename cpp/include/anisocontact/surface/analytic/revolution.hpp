@@ -51,7 +51,8 @@ class Revolution {
          {"spline",
           Kind::flag,
           "1",
-          "whether a cubic spline goes through the points, in the place of segments",
+          "whether a cubic spline goes through the points, in the place of segments; an end on the "
+          "axis that is within 8 degrees of a right angle to it is made round",
           Bound::any,
           false,
           {0.0}},
@@ -74,10 +75,13 @@ class Revolution {
     std::vector<Eigen::Vector2d> points;
     for (std::size_t i = 0; i < numbers.size(); i += 2)
       points.emplace_back(numbers[i], numbers[i + 1]);
-    if (!v.flag("spline")) return {placed(v, "point"), Segments(points, arcs, rounding).take()};
+    const double height = height_of_pole(points);
+    for (auto& p : points) p[1] -= height;
+    const Frame frame = placed(v, "point").raised(height);
+    if (!v.flag("spline")) return {frame, Segments(points, arcs, rounding).take()};
     if (!arcs.empty() || !rounding.empty())
       throw std::invalid_argument("spline goes with neither arcs nor rounding");
-    return {placed(v, "point"), spline_through(points)};
+    return {frame, SplineProfile(points).take()};
   }
 
   Domain domain() const {
@@ -110,10 +114,13 @@ class Revolution {
     double s = in_plane.xi[0];
     const bool held = in_plane.fixed[0];
     const Domain d = strip_.domain();
-    const double cap = polar_cap * (d.upper[0] - d.lower[0]);
+    const double cap = fine_polar_cap * (d.upper[0] - d.lower[0]);
     if ((pole_[0] && s < d.lower[0] + cap) || (pole_[1] && s > d.upper[0] - cap)) {
       s = std::clamp(s, d.lower[0] + cap, d.upper[0] - cap);
-      return {{p.angle, s}, Status::singular, {held && p.radius <= p.unresolved, held}};
+      const bool others = in_plane.status == Status::ambiguous;
+      return {{p.angle, s},
+              others ? Status::ambiguous : Status::singular,
+              {held && p.radius <= p.unresolved, held}};
     }
     const double radius = strip_.jet(s, middle).position[0];
     const bool any_angle = p.vanishes(p.radius, radius);
@@ -123,6 +130,16 @@ class Revolution {
   const Frame& frame() const { return frame_; }
 
  private:
+  /// Height of an end on the axis, 0 if there is none. From there heights count: beside it they change
+  /// by less than the rounding of what they may be above the point that was given.
+  static double height_of_pole(const std::vector<Eigen::Vector2d>& points) {
+    double size = 0.0;
+    for (const auto& p : points) size = std::max(size, std::abs(p[0]));
+    for (const auto& end : {points.front(), points.back()})
+      if (std::abs(end[0]) <= 1e-12 * size) return end[1];
+    return 0.0;
+  }
+
   static Nurbs strip(const Profile& profile) {
     double half = 0.0;
     for (const auto& c : profile.control)
