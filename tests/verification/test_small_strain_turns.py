@@ -15,7 +15,8 @@ from anisocontact.cli import main
 from anisocontact.contact import Contact
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step, StoppedError, Turn
-from anisocontact.solver.system.rotations import Rotations, polar_angle, turn_angles
+from anisocontact.solver.system.angles import polar_angle, turn_angles
+from anisocontact.solver.system.rotations import Rotations
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.002}})
 HELD = {"x": 0.0, "y": 0.0, "z": 0.0}

@@ -12,9 +12,9 @@ import numpy as np
 from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
+from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.base.typed import is_number, typed
 
 #: Difference between where something is and where its amplitude begins that is round-off, over

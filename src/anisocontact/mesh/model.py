@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Ints, Locals
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, vector_space
+from anisocontact.base.fenicsx import MPI, create_mesh, fem, vector_space
 from anisocontact.base.typed import typed
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
+from anisocontact.mesh.local_entities import count_inside, located
 from anisocontact.mesh.node_groups import nodes_at
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import named_facets, own_unknowns
@@ -91,8 +92,8 @@ class Model:
         shares = owners(own, comm.size, touching) if touching and comm.size > 1 else None
         mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points, shares)
         dim = mesh.topology.dim
-        bodies = _located(mesh, dim, {name: own.cells[cells] for name, cells in own.bodies.items()})
-        facets = _located(mesh, dim - 1, own.facets)
+        bodies = located(mesh, dim, {name: own.cells[cells] for name, cells in own.bodies.items()})
+        facets = located(mesh, dim - 1, own.facets)
         model = cls(mesh, bodies, facets, arrays.order, arrays.linear, idealisation)
         for name, places in arrays.nodes.items():
             found = nodes_at(model, name.partition(".")[0], places)
@@ -279,7 +280,7 @@ class Model:
         count = self.count_facets(name)
         if count == 0:
             raise InputError(f"facet group {name!r} has no facets", field)
-        inside = int(self.mesh.comm.allreduce(_with_two_cells(self.mesh, facets)))
+        inside = int(self.mesh.comm.allreduce(count_inside(self.mesh, facets)))
         if inside:
             raise InputError(
                 f"{inside} of {count} facets of {name!r} have a cell on either side: they lie "
@@ -304,7 +305,7 @@ class Model:
         of_body = [sides.links(cell) for cell in self.cells(self.body_of(name))]
         outer = np.unique(np.concatenate([np.zeros(0, dtype=np.int32), *of_body]))
         outer = outer[outer < topology.index_map(dim - 1).size_local]
-        local = len(outer) - _with_two_cells(self.mesh, outer)
+        local = len(outer) - count_inside(self.mesh, outer)
         return bool(self.count_facets(name) == self.mesh.comm.allreduce(local))
 
     def body_of(self, facet_group: str, field: str = "") -> str:
@@ -353,30 +354,6 @@ class Model:
         facets = self.facets(name)
         owned: Locals = facets[facets < index_map.size_local]
         return owned
-
-
-def _located(mesh: Any, dim: int, groups: Mapping[str, Ints]) -> dict[str, Locals]:
-    """Local entities of each group, from the nodes of each of its entities; collective."""
-    if not groups:
-        return {}
-    rows = np.concatenate(list(groups.values()))
-    numbers = np.repeat(np.arange(len(groups), dtype=np.int32), [*map(len, groups.values())])
-    found, of_group, once = locate_entities(mesh, dim, rows, numbers)
-    if once:  # none is in two groups
-        return {name: found[of_group == i] for i, name in enumerate(groups)}
-    return {
-        name: locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))[0]
-        for name, nodes in groups.items()
-    }
-
-
-def _with_two_cells(mesh: Any, facets: Locals) -> int:
-    """How many of the facets that this rank owns have a cell on either side."""
-    topology = mesh.topology
-    dim = topology.dim
-    topology.create_connectivity(dim - 1, dim)
-    owned = facets[facets < topology.index_map(dim - 1).size_local]
-    return int((np.diff(topology.connectivity(dim - 1, dim).offsets)[owned] > 1).sum())
 
 
 def _check_dimension(mesh: Any, idealisation: Idealisation) -> None:

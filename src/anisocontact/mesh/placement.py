@@ -11,8 +11,8 @@ import numpy as np
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.parameters import RANGE, out_of_range
 from anisocontact.base.registry import Parameter
+from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.quality import check_cells

@@ -9,7 +9,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import curved_gradients, middle_nodes
-from anisocontact.base.parameters import RANGE, out_of_range
+from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
 

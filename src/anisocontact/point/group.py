@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.parameters import check_size
+from anisocontact.base.sizes import check_size
 from anisocontact.base.typed import typed
 from anisocontact.point.foot import Foot
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.parameters import MOST, check_size
+from anisocontact.base.sizes import MOST, check_size
 
 #: A number or vector, knots of it, or a function of time.
 OverTime = npt.ArrayLike | Callable[[float], npt.ArrayLike]

@@ -16,7 +16,7 @@ from anisocontact.base.course import (
 )
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.limits import MOST_INCREMENTS
-from anisocontact.base.parameters import RANGE, out_of_range
+from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian

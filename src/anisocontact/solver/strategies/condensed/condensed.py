@@ -16,8 +16,9 @@ from anisocontact.solver.strategies.condensed.patterns import InteriorState, Wor
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
 from anisocontact.solver.system.ends_work import EndsWork
+from anisocontact.solver.system.partly_known import Kept
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.system.rotations import BodyRotation, Kept, Rotations
+from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 
