@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI
-from anisocontact.solver.terms import stabilisation
-from anisocontact.solver.terms.stabilisation import Stabilisation
+from anisocontact.solver.terms import lost_work
+from anisocontact.solver.terms.lost_work import LostWork
 
 
 def test_what_stops_a_body_is_what_contact_carries_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -27,7 +27,7 @@ def test_what_stops_a_body_is_what_contact_carries_more(monkeypatch: pytest.Monk
         out[0, 2] += now.force
 
     contact = SimpleNamespace(add_force=add_force)
-    monkeypatch.setattr(stabilisation, "closed_points", lambda _: np.array(now.closed))
+    monkeypatch.setattr(lost_work, "closed_points", lambda _: np.array(now.closed))
     springs: Any = SimpleNamespace(
         _free=[SimpleNamespace(contacts=[contact])] * 2,
         _before={id(contact): (np.zeros(2, dtype=bool), np.zeros((1, 3)))},
@@ -36,5 +36,5 @@ def test_what_stops_a_body_is_what_contact_carries_more(monkeypatch: pytest.Monk
     found = []
     for force, closed in ((3.0, [1, 0]), (10.0, [1, 1]), (12.0, [1, 1]), (12.0, [0, 1])):
         now.force, now.closed = force, np.array(closed, dtype=bool)
-        found.append(float(Stabilisation._stopping(springs, np.zeros((1, 3)))[0, 2]))
+        found.append(float(LostWork._stopping(springs, np.zeros((1, 3)))[0, 2]))
     assert found == [3.0, 7.0, 0.0, 0.0]

@@ -37,6 +37,10 @@ AT_LIMIT = 0.9999
 NEARLY = 0.97
 #: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted.
 MANY = 2
+#: Smallest part, share of an increment, that is halved where friction would not hold its loads with
+#: the pressures of now, and the loads of now are far below: where the loads say how much presses,
+#: and where it may come to press more.
+CLOSER, LESS_SURE = 0.05, 0.25
 #: Share of a motion that is a turn from which on a moment is told.
 TURNS = 0.1
 #: Share of the loads that friction holds which is no friction at all.
@@ -111,6 +115,15 @@ def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> li
     if cuts > MANY:
         found += _found(problem, deformable(problem, 1.0, now), soon=True)
     return found
+
+
+def least_halved(found: Sequence[Overload]) -> float:
+    """Smallest part that is halved to come closer to a limit of friction, share of an increment.
+
+    Args:
+        found: Loads that friction does not hold at the end of the part.
+    """
+    return CLOSER if any(one.pressed for one in found) else LESS_SURE
 
 
 def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 
-import numpy as np
-
 from anisocontact.base.blas_threads import with_one_thread
 from anisocontact.base.errors import InputError, tell_script
 from anisocontact.base.fenicsx import Vec, release_unreferenced
@@ -21,11 +19,16 @@ from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
-from anisocontact.solver.stepping.overload import AT_LIMIT, past_holding, too_much_load
+from anisocontact.solver.stepping.overload import (
+    AT_LIMIT,
+    least_halved,
+    past_holding,
+    too_much_load,
+)
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
-from anisocontact.solver.stepping.run_position import PLACE, RunPosition, fraction
+from anisocontact.solver.stepping.run_position import RunPosition, fraction
 from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
@@ -36,11 +39,6 @@ from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
 from anisocontact.solver.terms.step import Step
-
-#: Smallest part, share of an increment, that is halved where friction would not hold its loads with
-#: the pressures of now, and the loads of now are far below: where the loads say how much presses,
-#: and where it may come to press more.
-CLOSER, LESS_SURE = 0.05, 0.25
 
 
 @typed
@@ -164,9 +162,7 @@ class Solver(Uncopied):
         kept = self.problem.persistent()
         kept.common["problem"] = as_array(self._made_of)
         kept.common["energy_watch"] = self._energy.persistent()
-        angle, size = self._turns.refused
-        turns = {"kink": self._turns.kink, "refused_angle": angle, "refused_size": size}
-        kept.common.update({f"{PLACE}{name}": np.array(v) for name, v in turns.items()})
+        kept.common.update(self._turns.persistent())
         kept.common.update(self.place.persistent())
         before = self.place.before
         if before is not None:
@@ -187,11 +183,7 @@ class Solver(Uncopied):
         """
         place = RunPosition.restored(kept.common, self.limits)
         check_run(kept, self._made_of, self.problem.persistent(), place.steps_begun)
-        kink, *refused = (
-            kept.common[f"{PLACE}{name}"].item()
-            for name in ("kink", "refused_angle", "refused_size")
-        )
-        self._turns.kink, self._turns.refused = kink, (refused[0], refused[1])
+        self._turns.restore(kept.common)
         self.problem.restore(kept, self.steps[: place.steps_begun], place.stopped)
         self._begun = self.problem.begun
         self._energy.restore(kept.common["energy_watch"])
@@ -314,8 +306,7 @@ class Solver(Uncopied):
         if any(one.told or one.further for one in found):
             return events.overload()
         # pressures may move until then, and so may the limit: it is come closer to first
-        closer = CLOSER if any(one.pressed for one in found) else LESS_SURE
-        far = bool(found) and control.part > max(closer, self.limits.smallest)
+        far = bool(found) and control.part > max(least_halved(found), self.limits.smallest)
         if far:
             control.bound(0.5 * control.part)
         return far

@@ -10,9 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Arrays
 
 #: Share of `FOLLOWED` that is let pass: parts are sized for the limit itself.
 MARGIN = 1.05
@@ -25,6 +28,8 @@ _KINK, _ON_SURFACES, _SMALLER = 0.6, 0.75, 0.5
 #: Turn over size of a part, over that of one that was refused, from which on the next one is no
 #: larger than its refusal lets it be: points turn by more in the second half of a part.
 _AS_FAST = 0.5
+#: Names in a checkpoint of the kink, and of angle and size of what was refused.
+_KEPT = ("place.kink", "place.refused_angle", "place.refused_size")
 
 
 @dataclass(frozen=True)
@@ -119,3 +124,13 @@ class TurnWatch:
         if angle > self.kink and self._angle * size > _AS_FAST * angle * self._size:
             return part * size / self._size * FOLLOWED / angle
         return 1.0 if self._angle <= 0.5 * FOLLOWED else part * FOLLOWED / self._angle
+
+    def persistent(self) -> Arrays:
+        """What this step has shown, as arrays by name."""
+        numbers = (self.kink, *self.refused)
+        return {name: np.array(number) for name, number in zip(_KEPT, numbers, strict=True)}
+
+    def restore(self, kept: Arrays) -> None:
+        """Go on from what `persistent` gave."""
+        self.kink, *refused = (kept[name].item() for name in _KEPT)
+        self.refused = (refused[0], refused[1])

@@ -25,8 +25,9 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.body_motion import BodyMotion
 from anisocontact.solver.terms.flown_off import flown_off
-from anisocontact.solver.terms.free_body import FreeBody, closed_points, held_contacts
+from anisocontact.solver.terms.free_body import FreeBody, held_contacts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
+from anisocontact.solver.terms.lost_work import LostWork
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 from anisocontact.solver.terms.trust import Trust
@@ -93,11 +94,9 @@ class Stabilisation(Term):
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
-        self._before: dict[int, tuple[Flags, Floats]] = {}
-        self._fell = self._driven = False
+        self._work = LostWork(self._comm)
         self._where: Flags | None = None
         self._anchor: Floats = self._motion.begun
-        self._spent = 0.0
         self._count = 0
 
     def __bool__(self) -> bool:
@@ -121,7 +120,7 @@ class Stabilisation(Term):
         springs stand against nothing but contact, slide with what moves them: where to, springs
         only help to find, and so does a flow.
         """
-        return self._driven and not self.flow.flows
+        return self._work.driven and not self.flow.flows
 
     @property
     def loose(self) -> list[FreeBody]:
@@ -186,15 +185,8 @@ class Stabilisation(Term):
             load: Forces on the nodes this rank owns, (owned, 3).
         """
         self._motion.begun = self._anchor = u.copy()
-        self._spent, self._count = 0.0, 0
-        self._carried = np.zeros_like(u)
-        self._before = {
-            id(c): (np.zeros(len(c.state), dtype=np.bool_), np.zeros_like(u))
-            for free in self._free
-            if not free.touched()
-            for c in free.contacts
-        }
-        self._driven = self._fell = any([not f.touched(at_start=True) for f in self._free])
+        self._count = 0
+        self._work.start(self._free, u)
         for free in self._loose:
             free.start(u, load, self._where)
         on_held = held_contacts(self._free, at_start=True)
@@ -247,11 +239,8 @@ class Stabilisation(Term):
             return False
         force = self.force(u)
         if self._count == 0:  # later springs fade, and any load is most of them
-            self._driven |= any([free.against_loads(force) for free in self._free])
-        # what springs have carried is let go where the next equilibrium starts
-        against = 0.5 * (self._carried + force + self._stopping(u))
-        if self._driven:
-            self._spent -= self._comm.allreduce(float((against * (u - self._anchor)).sum()))
+            self._work.look(force)
+        self._work.count(u, u - self._anchor, force)
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
             return False
@@ -261,7 +250,8 @@ class Stabilisation(Term):
             raise NotHeldError(
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
             )
-        self._anchor, self._carried = u.copy(), force
+        self._anchor = u.copy()
+        self._work.go_on(force)
         for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
                 free.stiffness = max(self._next_stiffness(free, held, force), LEAST * self._scale)
@@ -279,21 +269,6 @@ class Stabilisation(Term):
         fades = min(FADE * now, free.stiffness_in_reach(free.pushed))
         needed = free.stiffness_to_land(carried, held) if self._count <= PATIENCE else 0.0
         return max(fades, min(needed, RAISE * now))
-
-    def _stopping(self, u: Floats) -> Floats:
-        """What contacts have come to carry where bodies came down on the way to here, (nodes, 3).
-
-        Nothing carried them on that way: what it leaves of the work of loads is lost.
-        """
-        out = np.zeros_like(u)
-        for contact in {id(c): c for free in self._free for c in free.contacts}.values():
-            closed, force = closed_points(contact), np.zeros_like(u)
-            contact.add_force(force)
-            before = self._before.get(id(contact))
-            if before is not None and self._comm.allreduce(int((closed & ~before[0]).any())):
-                out += force - before[1]
-            self._before[id(contact)] = closed, force
-        return out
 
     def lets_go(self, u: Floats) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does.
@@ -369,10 +344,10 @@ class Stabilisation(Term):
 
     @override
     def accept(self, u: Floats) -> float:
-        self.energy += self._spent
-        self._spent = 0.0
+        self.energy += self._work.spent
+        self._work.spent = 0.0
         self.trust.accept()
-        self.landed = self._fell
+        self.landed = self._work.fell
         if self.flow.flows:
             steps = self.flow.steps
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
