@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI
-from anisocontact.contact.trials import Trials
+from anisocontact.contact.slivers import Slivers
 from anisocontact.interface.states import STATE
 
 
@@ -24,16 +24,14 @@ def test_what_a_penalty_leaves_too_deep_gets_a_multiplier_for_good() -> None:
     start = np.zeros(4, dtype=STATE)
     start["multiplier"] = (1.0, 2.0, 0.0, 0.0)
     deep = np.array([True, False, False, True])
-    trials: Any = SimpleNamespace(
-        _own=SimpleNamespace(beyond=lambda _: deep),
-        _slight=np.array([False, False, True, True]),
-        _comm=MPI.COMM_SELF,
-        start=start,
-    )
+    own: Any = SimpleNamespace(beyond=lambda _: deep)
+    points: Any = SimpleNamespace(facet=np.zeros(4), covered=lambda areas: areas)
+    slivers = Slivers(points, MPI.COMM_SELF)
+    slivers.begin(np.array([1.0, 1e-3, 1e-5, 1e-6]))
     step: Any = SimpleNamespace(answer=SimpleNamespace(pressure=np.array([5.0, 6.0, 7.0, 8.0])))
-    found = Trials._held_as_well(trials, step)
+    found = slivers.held_as_well(own, step, start)
     assert found is not None
     assert found["multiplier"].tolist() == [1.0, 2.0, 0.0, 8.0]
-    assert trials._slight.tolist() == [False, False, True, False]
+    assert slivers.left.tolist() == [False, False, True, False]
     assert start["multiplier"].tolist() == [1.0, 2.0, 0.0, 0.0]
-    assert Trials._held_as_well(trials, step) is None
+    assert slivers.held_as_well(own, step, start) is None

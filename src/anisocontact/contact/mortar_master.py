@@ -9,7 +9,7 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
+from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.contact.along_normals import OPPOSED
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
@@ -18,6 +18,7 @@ from anisocontact.contact.contact_planes import (
     averaged_normal,
     held_directions,
 )
+from anisocontact.contact.crack_front import CrackFront
 from anisocontact.contact.facet_answer import found_on_all
 from anisocontact.contact.facet_mesh import outward_normals
 from anisocontact.contact.facet_pairs import facing_pairs, largest_radius
@@ -87,9 +88,7 @@ class MortarMaster(MeshedMaster):
         self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
         self._prescribed = PrescribedNodes(self._gathered)
-        gathered = self._gathered
-        shared = gathered.owned(gathered.local_names(np.unique(gathered.own.nodes)))
-        self._front = np.flatnonzero(np.isin(gathered.local_names(points.nodes[:, 0]), shared))
+        self._front = CrackFront(sides, points)
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
@@ -137,19 +136,8 @@ class MortarMaster(MeshedMaster):
         covered = at.weights.area > COVERED * self._points.quadrature.areas
         opposed = at.planes.now.cosine > OPPOSED
         found = np.asarray(covered & opposed & (at.opposite[0].facet >= 0))
-        found[self._opposite_themselves] = False
+        found[self._front.opposite_themselves(at.weights)] = False
         return found
-
-    @property
-    def _opposite_themselves(self) -> Ints:
-        """Slave nodes of the front of a crack, which both lips have: nothing opens or slides there.
-
-        Once the lips slide, what is left of their own weight would let a pressure grow that
-        displacements of their neighbours hardly change.
-        """
-        front, weights, named = self._front, self._at.weights, self._gathered.in_mesh
-        same = named(weights.masters[front]) == named(self._points.nodes[front, :1])
-        return np.asarray(front[(same & (weights.weight[front] != 0.0)).any(axis=1)])
 
     @override
     def initial_state(self) -> State:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.contact.active_set import Active, ActiveSet
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
@@ -16,25 +15,21 @@ from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.linearised import Linearised
 from anisocontact.contact.master import Answer, Master
-from anisocontact.contact.moved_master import followed
 from anisocontact.contact.multiplier_schemes import MultiplierSchemes
-from anisocontact.contact.multipliers import (
-    RATIO,
-    AugmentedLaw,
-    Multipliers,
-)
+from anisocontact.contact.multipliers import Multipliers
+from anisocontact.contact.point_changes import PointChanges
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
-from anisocontact.contact.slip_reversals import SlipReversals
+from anisocontact.contact.slivers import Slivers
 from anisocontact.contact.supported_share import SupportedPoints
+from anisocontact.contact.trial_laws import TrialLaws
 from anisocontact.interface import State
 
 #: What a trial starts from, and what the next Newton step is linear about.
 type Mark = tuple[State, Linearised | None]
 
-#: Least share of its weight that a point counts with, and the one up to which it may be left to its
-#: penalty: times a gap of a hundredth of a facet that is the tolerance.
-LEAST, SLIGHT = 1e-6, 1e-4
+#: Least share of its weight that a point counts with.
+LEAST = 1e-6
 
 
 class Trials:
@@ -61,17 +56,14 @@ class Trials:
     ) -> None:
         self._points = points
         self.master, self.interface, self.start, self._comm = master, law, state, comm
-        self._laws: AugmentedLaw = law
-        self._stiff_laws: AugmentedLaw = law
+        self._laws = TrialLaws(law, master, comm)
         self.multipliers = MultiplierSchemes(law, comm)
-        self._layer: Layer | None = None
-        self.immovable = self._slight = np.zeros(len(state), dtype=bool)
+        self.immovable = np.zeros(len(state), dtype=bool)
+        self._slivers = Slivers(points, comm)
         self._supports = SupportedPoints(len(state))
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
-        self._active = ActiveSet(comm)
-        self._reversals = SlipReversals(comm)
-        self._fresh = False
+        self._changes = PointChanges(comm)
         self._state: State
         self._accepted: Snapshot
         self._now: Snapshot
@@ -99,14 +91,13 @@ class Trials:
             state: The state.
             accepted: The points in it.
         """
-        self.start, self._linear, self._fresh = state, None, False
-        self._active = ActiveSet(self._comm)
-        self._reversals.begin()
+        self.start, self._linear = state, None
+        self._changes.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
         self._supports = SupportedPoints(len(state))
-        self._slight = self._points.covered(accepted.areas) < SLIGHT
+        self._slivers.begin(accepted.areas)
         if self._own is not None:
             start = self._own.begin(state, self.master.located(state))
             self._start_from(self._own.coming_to(self.master.body, start))
@@ -127,7 +118,7 @@ class Trials:
 
     def expect_motion(self) -> None:
         """Take it that the next trial is where the master has moved and no node has yet."""
-        self._fresh = True
+        self._changes.expect_motion()
 
     def forget(self) -> None:
         """Forget about which trial a Newton step was linear."""
@@ -158,21 +149,12 @@ class Trials:
             return self.master.let_go()
         step = self._step(self._now)
         better = self._own.improve(step)
-        if better is None and (better := self._held_as_well(step)) is None:
+        if better is None:
+            better = self._slivers.held_as_well(self._own, step, self.start)
+        if better is None:
             return False
         self._start_from(better)
         return True
-
-    def _held_as_well(self, step: ContactTrial) -> State | None:
-        """Start with multipliers of points that penalties leave too deep; None if none does."""
-        assert self._own is not None
-        deep = self._slight & self._own.beyond(step)
-        if not self._comm.allreduce(int(deep.any())):
-            return None
-        self._slight = self._slight & ~deep
-        start = self.start.copy()
-        start["multiplier"][deep] = step.answer.pressure[deep]
-        return start
 
     def settle(self) -> None:
         """Let points that came to lie in the trial, which is in equilibrium, carry friction."""
@@ -199,53 +181,37 @@ class Trials:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""
         master = self.master
         self._correct(semismooth, dt)
+        changes, own, about = self._changes, self._without_layer, self._linear
         trial = master.answer(self.start, dt, tangent=False, separate=True)
-        if self._follow(trial.snapshot):
-            trial = master.answer(self.start, dt, tangent=False, separate=True)
-        if self._restrained(trial.snapshot):
-            trial = master.answer(self.start, dt, tangent=False, separate=True)
-        self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
-        step = replace(self._step(trial.snapshot), settled=self._settled(trial.snapshot))
+        start = changes.with_master(self.start, trial.snapshot, self._accepted, own)
+        if start is not None:
+            self.start = start
+            trial = master.answer(start, dt, tangent=False, separate=True)
+        fixed = self.immovable | self._slivers.left
+        start = changes.restrained(self.start, trial.snapshot, about, fixed, own)
+        if start is not None:
+            self.start = start
+            trial = master.answer(start, dt, tangent=False, separate=True)
+        self._slivers.look(trial.snapshot.areas)
+        step = replace(self._step(trial.snapshot), settled=changes.settled(trial.snapshot, about))
         physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
-        active = Active.of(step.answer, self._active.kept)
         if self._layer is not None or self.interface.tangential.in_python:
-            self._reversals.forget()
+            changes.reversals.forget()
         answer, self._linear = Linearised.of(
-            semismooth, step, master, trial, dt, physical, active, self._reversals
+            semismooth,
+            step,
+            master,
+            trial,
+            dt,
+            physical,
+            changes.active(step.answer),
+            changes.reversals,
         )
         return answer
 
-    def _settled(self, trial: Snapshot) -> bool:
-        """Whether the last correction has changed the status of no point; collective."""
-        about, now = self._linear, trial.response.status
-        changed = about is None or bool((about.status != now).any())
-        return not self._comm.allreduce(int(changed))
-
-    def _follow(self, trial: Snapshot) -> bool:
-        """Let points go with a master that has moved; whether trials start anew from there."""
-        fresh, self._fresh = self._fresh, False
-        if not fresh or self._own is None or self._layer is not None:
-            return False
-        gap, before = trial.response.gap, self._accepted.response.gap
-        start = followed(self.start, self._own, gap, before, self._comm)
-        self.start = self.start if start is None else start
-        return start is not None
-
-    def _restrained(self, trial: Snapshot) -> bool:
-        """Let points change as they may, see `ActiveSet`; whether trials start anew from there."""
-        if self._linear is None or self._own is None or self._layer is not None:
-            return False
-        fixed, before = self.immovable | self._slight, self._linear.active
-        gap, pressure = trial.response.gap, trial.response.pressure
-        start = self._active.restrained(self.start, gap, pressure, before, fixed, self._own)
-        self.start = self.start if start is None else start
-        return start is not None
-
     def close_singly(self) -> bool:
         """Let corrections close one point at a time; whether that is something else, collective."""
-        own, before = self._own, self._active.singly
-        self._active.singly |= own is not None and own.closes_singly and self._layer is None
-        return self._active.singly is not before
+        return self._changes.close_singly(self._without_layer)
 
     def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""
@@ -269,7 +235,7 @@ class Trials:
 
     def _let_go_of_immovable(self) -> None:
         if self._own is not None and self.multipliers.exact:
-            self._own.let_go(self.start, self.immovable, self._slight)
+            self._own.let_go(self.start, self.immovable, self._slivers.left)
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -321,7 +287,7 @@ class Trials:
     def go_back(self, mark: Mark) -> None:
         """Take it that the trials since a mark have not been."""
         self.start, self._linear = mark
-        self._reversals.forget()
+        self._changes.reversals.forget()
 
     def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""
@@ -334,9 +300,19 @@ class Trials:
         return self.multipliers.taken
 
     @property
+    def _without_layer(self) -> Multipliers | None:
+        """Multipliers, if there are any and no layer."""
+        return None if self._layer is not None else self._own
+
+    @property
     def _semismooth(self) -> Semismooth | Layer | None:
         """What follows every step of Newton's method."""
-        return self._layer or (None if self._own is None else self._own.semismooth)
+        return self._laws.follows(self._own)
+
+    @property
+    def _layer(self) -> Layer | None:
+        """The layer behind adhesion, if there is one."""
+        return self._laws.layer
 
     def slip_stiffness(self, dt: float) -> float:
         """Largest stiffness of a physical adhesion against slip, stress/length; 0 for others.
@@ -355,16 +331,9 @@ class Trials:
             compliance: Of the layer, length/stress.
             dt: Time increment.
         """
-        soft, start = self.interface.in_series(compliance, dt)
-        stiff, begun = self.interface.in_series(compliance / RATIO, dt)
-        first = self.start
-        if self._layer is not None:
-            first = self._layer.without(first)
-            self._layer.stiffer(compliance, (start, begun))
-        else:
-            normal = None if self._own is None else self._own.semismooth
-            self._layer = Layer(compliance, (start, begun), normal, self.master.at, self._comm)
-        self._take(soft, stiff)
+        first = self._laws.lay(compliance, dt, self._own, self.start)
+        self._stiffen()
+        assert self._layer is not None
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
 
     @property
@@ -383,11 +352,8 @@ class Trials:
 
     def soften_laws(self, share: float) -> None:
         """Answer with a share of the penalties, `by_penalty`; with 1 by the law as it is."""
-        if share == 1.0:
-            laws: AugmentedLaw = self.interface
-        else:
-            laws = self.interface.stiffened(share, share)
-        self._take(laws, laws)
+        self._laws.soften(share)
+        self._stiffen()
 
     def comply(self, stiffness: float, size: float) -> None:
         """Come to penalties by way of multipliers, see `Compliant`, until `take_away`.
@@ -403,32 +369,22 @@ class Trials:
         """Take the layer away, or multipliers that are a way to penalties."""
         if not self.multipliers.exact:
             self.multipliers.taken = None
-            self._take(self.interface, self.interface)
+            self._laws.take_given()
+            self._stiffen()
             self.begin(self._state, self._accepted)
         if self._layer is not None:
-            self.start = self._layer.without(self.start)
-            self._layer = None
-            self._take(self.interface, self.interface)
-
-    def _take(self, laws: AugmentedLaw, stiff: AugmentedLaw) -> None:
-        """Answer by other laws, and take the derivative of others."""
-        self._laws, self._stiff_laws = laws, stiff
-        self._stiffen()
-        self._linear = None
+            self.start = self._laws.remove_layer(self.start)
+            self._stiffen()
 
     def _stiffen(self) -> None:
-        """Multiply the penalties of the laws as the multipliers say."""
-        laws, stiff = self._laws, self._stiff_laws
-        if self._own is not None:
-            laws = laws.stiffened(*self._own.factors)
-            if self._semismooth is not None:
-                stiff = stiff.stiffened(*self._semismooth.stiff_factors)
-        self.master.take(laws, stiff)
+        """Answer by the laws of now, with penalties as the multipliers say."""
+        self._laws.stiffen(self._own)
+        self._linear = None
 
     def _start_from(self, start: State) -> None:
         """Let trials start from other multipliers, perhaps with other penalties."""
         self.master.anchor(start)
-        self.start, self._linear = start, None
+        self.start = start
         self._let_go_of_immovable()
         self._stiffen()
 
@@ -437,7 +393,7 @@ class Trials:
         own, answer, far = self._own, trial.response, np.full(len(self.start), np.inf)
         covered = self._points.covered(trial.areas).clip(LEAST, 1.0)
         shared = self.shared.at(self._points.nodes[:, 0])
-        slight = self._slight & self.multipliers.exact
+        slight = self._slivers.left & self.multipliers.exact
         closeness = far if own is None else own.closeness(self.start, answer.pressure, answer.gap)
         return ContactTrial(
             start=self.start,
