@@ -80,25 +80,8 @@ def test_three_processes(tmp_path: Path) -> None:
     _compared(tmp_path, 3, NAMES)
 
 
-@pytest.mark.ci
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("model", "more", "said"),
-    [
-        (
-            "neo-hookean",
-            '[[tie]]\nslave = "head.bottom"\nmaster = "block.top"\n',
-            "nodes follow other nodes",
-        ),
-        ("neo-hookean-incompressible", "", "changes of volume are kept apart"),
-    ],
-)
-def test_what_needs_one_process(tmp_path: Path, model: str, more: str, said: str) -> None:
-    """It is said in one line where it is asked for, and nothing is written; `auto` takes another.
-
-    Requirement: no silent change of strategy. Source: docs/howto/strategies.md.
-    """
-    text = f"""
+#: Two bodies on a plane, with a strategy that is asked for.
+CASE = """
 [mesh.box.block]
 origin = [0, 0, 0]
 size = [1, 1, 0.5]
@@ -146,19 +129,30 @@ pictures = false
 [solver]
 strategy = "condensed"
 """
+
+
+@pytest.mark.ci
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "more", "said"),
+    [
+        (
+            "neo-hookean",
+            '[[tie]]\nslave = "head.bottom"\nmaster = "block.top"\n',
+            "nodes follow other nodes",
+        ),
+        ("neo-hookean-incompressible", "", "changes of volume are kept apart"),
+    ],
+)
+def test_what_needs_one_process(tmp_path: Path, model: str, more: str, said: str) -> None:
+    """It is said in one line where it is asked for, and nothing is written; `auto` takes another.
+
+    Requirement: no silent change of strategy. Source: docs/howto/strategies.md.
+    """
+    text = CASE.format(model=model, more=more)
     (tmp_path / "case.toml").write_text(text)
-    run = [
-        "mpirun",
-        "-n",
-        "2",
-        sys.executable,
-        "-m",
-        "anisocontact",
-        "run",
-        "case.toml",
-        "-o",
-        "out",
-    ]
+    command = "-m anisocontact run case.toml -o out"
+    run = ["mpirun", "-n", "2", sys.executable, *command.split()]
     done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2, done.stderr
     (line,) = done.stderr.strip().splitlines()
