@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.base.statuses import STICK
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
@@ -113,16 +114,16 @@ class FreeBody:
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
 
-        Enough points stick, with a known stiffness, or pressures alone hold it, where points just
-        touch as well; a body on springs may slide as well.
+        Enough points stick, with a known stiffness, or pressures hold it with the few that stick,
+        where points just touch as well; a body on springs may slide as well.
         """
         if self.sprung:
             return self._count("stick", "slip") >= ENOUGH
-        return self.sticks() or self._pressed(at_start=True)
+        return self.sticks() or self._resisted(at_start=True)
 
     def holds(self) -> bool:
         """Whether contact holds it in the trial, and springs where it has some."""
-        return self._stiff() if self.sprung else self.sticks() or self._pressed()
+        return self._stiff() if self.sprung else self.sticks() or self._resisted()
 
     @property
     def sprung(self) -> bool:
@@ -133,21 +134,43 @@ class FreeBody:
         """Whether enough points stick in the trial, with a known stiffness, to hold it."""
         return self._count("stick") >= ENOUGH
 
-    def _pressed(self, at_start: bool = False) -> bool:
-        """Whether pressures at closed points resist all its motions, of which none is sliding.
+    def _resisted(self, at_start: bool = False) -> bool:
+        """Whether closed points resist all its motions: pressures, of which none is sliding.
+
+        Points that stick resist all ways, however few they are: a sheet that warms on a floor
+        slides everywhere but at one point, which holds it along the floor.
 
         Args:
             at_start: As of `touched`.
         """
-        matrix = np.zeros((len(self.left), len(self.left)))
+        resisted = np.zeros((2, len(self.left), len(self.left)))
         for contact in self.contacts:
             closed = closed_points(contact, at_start)
-            normal = contact.trial.normal[closed]
-            arms = (contact.points[closed] - self.body.centre) / self.body.size
-            along = np.concatenate([normal, np.cross(arms, normal)], axis=1) @ self.left.T
-            matrix += along.T @ along
-        sizes = np.linalg.eigvalsh(self.contacts[0].space.mesh.comm.allreduce(matrix))
+            resisted[0] += self._resistance(contact, closed, contact.trial.normal[:, None])
+            if _sticks_all_ways(contact):
+                stuck = contact.trial.status == STICK
+                resisted[1] += self._resistance(contact, stuck, np.eye(3)[None])
+        resisted = self.contacts[0].space.mesh.comm.allreduce(resisted)
+        # a single point counts as much as all that press
+        largest = np.linalg.eigvalsh(resisted)[:, -1]
+        sizes = np.linalg.eigvalsh(
+            (resisted[largest > 0.0] / largest[largest > 0.0, None, None]).sum(axis=0)
+        )
         return bool(sizes[0] > PRESSED * sizes[-1])
+
+    def _resistance(self, contact: Contact, points: Flags, ways: Floats) -> Floats:
+        """Resistance of some points to the motions of `left` along directions of theirs, (j, j).
+
+        Args:
+            contact: One of its contacts.
+            points: The points, (n,).
+            ways: Directions of each point, or the same of all, (n, k, 3) or (1, k, 3).
+        """
+        at = np.broadcast_to(ways, (len(points), *ways.shape[1:]))[points]
+        arms = (contact.points[points] - self.body.centre) / self.body.size
+        turns = np.cross(arms[:, None], at)
+        along = np.concatenate([at, turns], axis=2).reshape(-1, 6) @ self.left.T
+        return np.asarray(along.T @ along)
 
     def reach(self, at_start: bool = False) -> float:
         """How far stabilisation lets it move at once, length.
@@ -241,8 +264,7 @@ class FreeBody:
         return any(self.contacts[0].space.mesh.comm.allgather(closed))
 
     def _count(self, *statuses: str) -> int:
-        laws = ((c, c.interface.tangential) for c in self.contacts)
-        stiff = [c for c, law in laws if not law.in_python and law.holds_all_ways()]
+        stiff = [contact for contact in self.contacts if _sticks_all_ways(contact)]
         return sum(c.counts()[status] for c in stiff for status in statuses)
 
     def _stiff(self) -> bool:
@@ -276,6 +298,12 @@ class FreeBody:
                 len(rows), here.shape[2], there.shape[2]
             )
         return np.asarray(np.einsum("ipr,prc,jpc->ij", here, blocks, there, optimize=True))
+
+
+def _sticks_all_ways(contact: Contact) -> bool:
+    """Whether points of a contact that stick have a known stiffness along both axes."""
+    law = contact.interface.tangential
+    return not law.in_python and law.holds_all_ways()
 
 
 def closed_points(contact: Contact, at_start: bool = False) -> Flags:
