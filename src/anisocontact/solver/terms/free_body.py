@@ -122,8 +122,12 @@ class FreeBody:
         return self.sticks() or self._resisted(at_start=True)
 
     def holds(self) -> bool:
-        """Whether contact holds it in the trial, and springs where it has some."""
-        return self._stiff() if self.sprung else self.sticks() or self._resisted()
+        """Whether contact holds it in the trial, and springs where it has some.
+
+        Points that slide in many directions do, as friction has stiffness across that of each.
+        """
+        counted = not self.sprung and (self.sticks() or self._resisted())
+        return counted or self._stiff()
 
     @property
     def sprung(self) -> bool:
@@ -272,10 +276,10 @@ class FreeBody:
 
         A rank has the couplings of its own slave points alone: on several, points are counted.
         """
-        assert self.springs is not None
         if self.contacts[0].space.mesh.comm.size > 1:
-            return self.may_hold()
-        projected = self.springs.copy()
+            return self.sprung and self.may_hold()
+        size = len(self.motions)
+        projected = np.zeros((size, size)) if self.springs is None else self.springs.copy()
         for contact in self.contacts:
             for blocks in contact.answer.couplings():
                 projected += self.motions @ self._projected(blocks) @ self.motions.T

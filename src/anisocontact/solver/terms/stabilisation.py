@@ -194,7 +194,8 @@ class Stabilisation(Term):
             needed = free.stiffness_in_reach(free.pushed, at_start=True)
             if free.touched(at_start=True):
                 needed = max(needed, free.stiffness_to_land(free.pushed, held, at_start=True))
-            free.trusted = not self.trust.careful and free.may_hold()
+            likely = self.trust.held or free.may_hold()
+            free.trusted = not self.trust.careful and likely
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
     def confine(self, where: Flags | None) -> None:
@@ -283,7 +284,7 @@ class Stabilisation(Term):
             return "contact alone does not hold all bodies"
         lost = self.lost(u)
         # a body on springs has been caught where contact and springs have stiffness again
-        holding = self.trust.careful and not lost and all([f.holds() for f in self._free])
+        holding = all([f.holds() for f in self._free]) and not lost
         self.trust.look(holding, all(f.sprung for f in self._free))
         return lost
 

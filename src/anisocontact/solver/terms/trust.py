@@ -15,15 +15,18 @@ class Trust:
 
     Attributes:
         careful: Whether bodies get springs also where they stick.
+        held: Whether contact has held all bodies in the last accepted part of the step, as it may
+            where all their points slide.
     """
 
     def __init__(self) -> None:
         self.renew()
-        self._caught = self._holding = False
+        self._caught = self._holding = self._held = False
 
     def renew(self) -> None:
         """Trust contact: a step begins."""
         self.careful, self._patience, self._sound = False, 1, 0
+        self.held = False
 
     def lose(self, trusted: bool) -> None:
         """Bodies get springs in the next attempts, since one has failed.
@@ -42,19 +45,20 @@ class Trust:
             holding: Whether contact and springs have stiffness against all motions again.
             sprung: Whether all bodies have springs of their own.
         """
-        self._holding = self.careful and holding
+        self._held, self._holding = holding, self.careful and holding
         self._caught = self._holding and sprung
 
     def accept(self) -> None:
         """The equilibrium is accepted."""
         self._sound += self._holding
+        self.held = self._held
         self.careful = self.careful and not (self._caught or self._sound >= self._patience)
 
     def numbers(self) -> list[int]:
         """What goes into a checkpoint."""
-        return [int(self.careful), self._patience, self._sound]
+        return [int(self.careful), self._patience, self._sound, int(self.held)]
 
     def restore(self, numbers: Sequence[float]) -> None:
         """Take up what `numbers` gave."""
-        careful, self._patience, self._sound = map(int, numbers)
-        self.careful = bool(careful)
+        careful, self._patience, self._sound, held = map(int, numbers)
+        self.careful, self.held = bool(careful), bool(held)
