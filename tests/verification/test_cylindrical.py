@@ -62,11 +62,12 @@ def error(problem, exact=lame):
 PRESS = {"ring.inner": {"radial": LED}, "ring.outer": {"radial": 0.0}}
 
 
-def press(increments=1):
-    """The inner face is led outwards, the outer one held; what is tangential is free."""
+def press(increments=1, **outer):
+    """The inner face is led outwards, the outer one held; the tangential is free, or `outer`."""
     from anisocontact.solver import Step
 
-    return Step("press", increments, cylindrical={k: led(**v) for k, v in PRESS.items()})
+    given = PRESS | {"ring.outer": PRESS["ring.outer"] | outer}
+    return Step("press", increments, cylindrical={k: led(**v) for k, v in given.items()})
 
 
 @pytest.mark.parametrize(("order", "rate"), [(1, 1.85), (2, 2.85)])
@@ -103,9 +104,8 @@ def test_any_sector_and_the_whole(angles):
     whole = angles[1] - angles[0] == 360.0
     planes = () if whole else ("start", "end")
     problem = ring((4, 32 if whole else 6, 1), angles, planes=planes)
-    step = press()
-    if whole:  # something has to keep it from turning
-        step.cylindrical["ring.outer"] = led(radial=0.0, tangential=0.0)
+    # something has to keep the whole from turning
+    step = press(tangential=0.0) if whole else press()
     last = run(problem, step)
     assert error(problem) < 5e-4
     b = LED / (1.0 / INNER - INNER / OUTER**2)

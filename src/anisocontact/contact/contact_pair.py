@@ -289,8 +289,13 @@ class ContactPair:
         return float(np.linalg.norm(levers(slopes, distance, force, self._stiffness)))
 
     def _stiffness(self) -> Floats:
-        """How stiff points are by laws and bodies, (n,), force/length."""
+        """How stiff points are by laws and bodies, (n,), force/length.
+
+        As stiff as may be where the law is one in Python, which is not asked in each evaluation.
+        """
         interface, penalty = self.interface, self.trials.penalty
+        if interface.tangential.in_python:
+            return np.full(len(self.current.areas), np.inf)
         slip = interface.slip_stiffness(self._dt)
         largest = max(penalty, interface.penalties()[0], slip, self.body_stiffness)
         return np.asarray(largest * self.current.areas)

@@ -223,10 +223,7 @@ class Attempts:
                 schemes.append(SLENDER)
             if led == SINGLY:
                 schemes.append(SINGLY)
-            schemes.sort(key=led.__ne__)
-            if cycles and led == GRADED:
-                schemes.insert(1, GRADED)
-            ways = _following(searching, full, cycles, trusts, schemes)
+            ways = _following(searching, full, cycles, trusts, sorted(schemes, key=led.__ne__))
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
@@ -337,8 +334,7 @@ def _following(
         cycles: Whether multipliers can be found in cycles instead.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
         schemes: Those that follow every correction, in the order in which they are tried: the one
-            that has led to the last accepted part first. Where soft penalties have, which are many
-            corrections, they are the second.
+            that has led to the last accepted part first.
     """
     usual = replace(first, spare=cycles)
     begun = [replace(usual, multipliers=one) for one in schemes]

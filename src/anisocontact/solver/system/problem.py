@@ -320,7 +320,8 @@ class Problem(ComposedSystem, Uncopied):
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
             self.attached.add_force(nodal, load)
-            self.rigid.add_face_loads(load)
+            if self.stabilisation.aloft:
+                self.rigid.add_face_loads(load)
             self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:

@@ -128,6 +128,15 @@ class Stabilisation(Term):
         return self._loose
 
     @property
+    def aloft(self) -> bool:
+        """Whether a body that gets springs touches nothing where the part begins; collective.
+
+        On bodies that touch, springs that stand against loads on reference points are stiffer than
+        it takes, and cost corrections.
+        """
+        return any([not free.touched(at_start=True) for free in self._free])
+
+    @property
     def trusts(self) -> bool:
         """Whether contact alone is to hold a body in this attempt."""
         return any(free.trusted for free in self._free)
