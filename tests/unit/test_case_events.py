@@ -126,6 +126,22 @@ def test_run_that_goes_on(tmp_path: Path):
         assert found == rows
 
 
+def test_nothing_is_left_to_stop_after_the_event_of_the_last_step(tmp_path: Path):
+    """A run whose last step an event has ended is done, whatever asks it to stop then.
+
+    Requirement: done, as where the last increment of a step is met. An interruption in the
+    increment of the event said "stopped", and a run that went on from there had nothing to do.
+    """
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.split("[[step]]\nname = \"drag\"")[0] + CASE[CASE.index("[output]") :])
+    assert run(build(load(path)), tmp_path / "whole", _Stops()).status == "done"
+    count = json.loads((tmp_path / "whole" / "summary.json").read_text())["steps"]
+    assert run(build(load(path)), tmp_path / "out", _Stops(count)).status == "done"
+    (event,) = json.loads((tmp_path / "out" / "summary.json").read_text())["events"]
+    assert event["happened"] and event["time"] < 1.0
+    assert run(build(load(path)), tmp_path / "part", _Stops(count - 1)).status == "stopped"
+
+
 def test_stress_at_a_probe(tmp_path: Path):
     """A step that ends at a von Mises stress in the middle of the block.
 

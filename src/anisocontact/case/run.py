@@ -290,10 +290,11 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
 
 
 def _was_last(built: Built, accepted: Accepted) -> bool:
-    """Whether an accepted part ends the increments of the last step: nothing is left to stop."""
+    """Whether an accepted part ends the last step, or has its event: nothing is left to stop."""
     step = built.steps[-1]
     last = built.solver.place.step == len(built.steps) - 1
-    return last and accepted.increment == step.increments and accepted.done == 1.0
+    at_end = accepted.increment == step.increments and accepted.done == 1.0
+    return last and (at_end or bool(accepted.event))
 
 
 def _iteration_line(progress: Progress) -> str:
