@@ -85,6 +85,7 @@ __all__ = [
     "scalar_element",
     "ufl",
     "vector_space",
+    "vertex_gradients",
 ]
 
 # UFL has no types, DOLFINx few, and those of petsc4py take enumerations and sums of vectors for
@@ -157,6 +158,13 @@ def curved_gradients(cell: str) -> Floats:
     element = _lagrange(cell, 2)
     points, _ = basix.make_quadrature(element.cell_type, 4)
     return np.ascontiguousarray(np.moveaxis(element.tabulate(1, points)[1:, :, :, 0], 0, -1))
+
+
+def vertex_gradients(mesh: Any) -> Floats:
+    """Gradients of the shapes of the cells of a mesh at their corners, (corners, nodes, dim)."""
+    element = _lagrange(mesh.topology.cell_name(), mesh.geometry.cmaps[0].degree)
+    found = element.tabulate(1, basix.geometry(element.cell_type))
+    return np.ascontiguousarray(np.moveaxis(found[1:, :, :, 0], 0, -1))
 
 
 def _lagrange(cell: str, degree: int) -> Any:

@@ -12,6 +12,7 @@ from anisocontact.bulk.material_warnings import doubtful_materials
 from anisocontact.contact.mirror_planes import unmirrored
 from anisocontact.contact.remote_nodes import with_ghosts
 from anisocontact.mesh.connected_components import unjoined_bodies
+from anisocontact.mesh.folded_cells import folded_cells
 from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
 from anisocontact.solver.system.parts import ProblemParts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, along_axes
@@ -145,7 +146,8 @@ def _doubtful(parts: ProblemParts) -> list[str]:
     links = [] if ties is None else ties.links
     tied = [parts.model.facet_nodes(group) for link in links for group in link]
     directions = unmirrored(parts.contacts, parts.guides.of_planes())
-    return of_ties + bodies + directions + unjoined_bodies(parts.model, of_contacts + tied)
+    cells = folded_cells(parts.model)
+    return of_ties + bodies + cells + directions + unjoined_bodies(parts.model, of_contacts + tied)
 
 
 def _cut_faces(parts: ProblemParts) -> list[SupportedFrame]:
