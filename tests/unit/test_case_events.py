@@ -133,7 +133,9 @@ def test_nothing_is_left_to_stop_after_the_event_of_the_last_step(tmp_path: Path
     increment of the event said "stopped", and a run that went on from there had nothing to do.
     """
     path = tmp_path / "case.toml"
-    path.write_text(CASE.split("[[step]]\nname = \"drag\"")[0] + CASE[CASE.index("[output]") :])
+    path.write_text(
+        CASE.split('[[step]]\nname = "drag"', maxsplit=1)[0] + CASE[CASE.index("[output]") :]
+    )
     assert run(build(load(path)), tmp_path / "whole", _Stops()).status == "done"
     count = json.loads((tmp_path / "whole" / "summary.json").read_text())["steps"]
     assert run(build(load(path)), tmp_path / "out", _Stops(count)).status == "done"

@@ -9,9 +9,10 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
+from anisocontact.contact.tips import points_on_tips
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Axisymmetric, Body, build_mesh, make_shape
+from anisocontact.mesh import Axisymmetric, Body, BoxSpec, build_box, build_mesh, make_shape
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
@@ -54,3 +55,44 @@ def test_the_block_is_in_balance_wherever_the_tip_is(law):
         assert cone + support == pytest.approx(0.0, abs=2e-6 * support)
     assert there[-1] == pytest.approx(here[-1], rel=2e-6)
     assert here[-1, 1] > 2.0
+
+
+def _tool(lean, at, arcs=False):
+    """A profile that comes to the axis at an angle, upwards, through a place of the axis."""
+    high = np.tan(np.radians(lean))
+    profile = {"profile": [[0, 0], [1, high]], "arcs_deg": [2 * lean]} if arcs else None
+    profile = profile or {"profile": [[0, 0], [1, high]]}
+    return make_surface("revolution", point=at, axis=(0, 0, 1), **profile)
+
+
+@pytest.mark.parametrize(
+    ("surface", "share"),
+    [
+        (lambda at: make_surface("cone", apex=at, axis=(0, 0, 1), angle=np.radians(70)), "34%"),
+        (lambda at: _tool(20.0, at), "34%"),
+        (lambda at: _tool(5.0, at), "9%"),
+        (lambda at: _tool(0.5, at), ""),
+        (lambda at: _tool(20.0, at, arcs=True), ""),
+        (lambda at: make_surface("sphere", centre=(*at[:2], at[2] + 1), radius=1.0), ""),
+    ],
+    ids=["cone", "profile", "slight", "flat", "round", "sphere"],
+)
+def test_a_point_of_a_body_in_space_on_a_tip_is_told(surface, share):
+    """Requirement: a tip on a slave point is told with the share of its force to the side.
+
+    Source: normals of a cone make the angle of its slope with the axis, and the sine of that is
+    their part across. A round end has one normal, and a tip between points meets none.
+    """
+    model = build_box({"block": BoxSpec((2, 2, -1), (2, 2, 1), (4, 4, 2))})
+
+    def told(at):
+        interface = Interface(surface(at), LAW)
+        return points_on_tips([Contact(model, "block.top", interface, mortar=True)])
+
+    if share:
+        (line,) = told((3, 3, 0))
+        assert "at (3, 3, 0), where it has no normal" in line
+        assert f"presses the point aside, by {share} of its force" in line
+    else:
+        assert told((3, 3, 0)) == []
+    assert told((3.2, 3.2, 0)) == []

@@ -136,12 +136,14 @@ def _hints(built: Built) -> Iterator[str]:
     from anisocontact.contact.field_hints import doubtful_fields
     from anisocontact.contact.friction_hints import doubtful_friction
     from anisocontact.contact.hints import uneven
+    from anisocontact.contact.tips import points_on_tips
 
     contacts = built.problem.contacts
     for text in uneven(contacts):
         yield f"note      {text}"
     doubts = (*doubtful_sides(contacts), *doubtful_friction(contacts), *doubtful_fields(contacts))
-    for text in (*built.doubts(), *built.solver.cautions, *doubts):
+    found = (*built.doubts(), *built.solver.cautions, *doubts, *points_on_tips(contacts))
+    for text in found:
         yield f"warning   {text}"
 
 

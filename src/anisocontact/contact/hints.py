@@ -17,6 +17,7 @@ from anisocontact.contact.hidden_borders import hidden_borders
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.sharp_edges import SMOOTH
+from anisocontact.contact.tips import points_on_tips
 
 #: Size of the facets of the slave over those of the master beyond which points between which
 #: something of the master fits are worth a word; where nothing touches, already at MISSED.
@@ -303,7 +304,7 @@ def warn_of(contacts: Sequence[Contact]) -> None:
     Args:
         contacts: The contacts, as of `doubtful_sides`.
     """
-    _warn([*doubtful_sides(contacts), *doubtful_fields(contacts)])
+    _warn([*doubtful_sides(contacts), *doubtful_fields(contacts), *points_on_tips(contacts)])
 
 
 def warn_of_overlaps(contacts: Sequence[Contact]) -> None:

@@ -17,6 +17,7 @@ from anisocontact.contact.hints import (
     overlapping,
     pressed_aside,
 )
+from anisocontact.contact.tips import points_on_tips
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.cut_faces import PAST
@@ -57,6 +58,7 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         for contact, entry in zip(contacts, shown, strict=True)
     )
     lines = [*doubtful_sides(contacts), *doubtful_friction(contacts), *doubtful_fields(contacts)]
+    lines += points_on_tips(contacts)
     return [*lines, *overlapping(pairs, "adjust = true")]
 
 
