@@ -266,7 +266,8 @@ void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial&
   }
   add_trial_slopes(in, t, by_angle, by_force, r);
   Covector<double> later{};
-  if (time.d[0] != 0.0 && t.tensors.in_time) later = by_time(l, in, t, p, solved, by_force, slips);
+  if (time.d[0] != 0.0 && t.tensors.in_time && !law::frictionless(l.friction))
+    later = by_time(l, in, t, p, solved, by_force, slips);
   for (std::size_t a = 0; a < 2; ++a) {
     double& by_gap = r.slope(Slope::gap, 0)[a];
     by_gap = by_force[2][a] * in.d_pressure + later[a] * time.d[0];

@@ -57,7 +57,11 @@ def test_a_point_without_friction_carries_pressure_alone(rule, form):
 
 @pytest.mark.parametrize("adhesion", [e.name for e in registry.adhesion_models()])
 def test_without_friction_no_adhesion_holds(adhesion):
-    """Whatever the adhesion, the limit of the force is zero."""
+    """Whatever the adhesion, the limit of the force is zero.
+
+    Also where the gap closes within the step, so that the time in contact depends on the gap: the
+    tangent is that of the penalty, eps n (x) n, to rounding.
+    """
     values = {"relaxation_time": 2, "viscosity": 3, "stiffness_maxwell": 4, "relaxation": 1}
     values |= {"stiffness": 100, "stiffness_instant": 50}
     (entry,) = (e for e in registry.adhesion_models() if e.name == adhesion)
@@ -68,6 +72,9 @@ def test_without_friction_no_adhesion_holds(adhesion):
     )
     found = law.update(law.initial_state([[0, 0, -0.1]]), [[0.3, 0.2, -0.1]], 0.5)
     assert found.traction[0].tolist() == [0.0, 0.0, 1.0]
+    closing = law.update(law.initial_state([[0, 0, 0.1]]), [[0.3, 0.2, -0.1]], 0.5)
+    assert closing.traction[0].tolist() == [0.0, 0.0, 1.0]
+    assert closing.tangent[0] == pytest.approx(np.diag([0.0, 0.0, -10.0]), abs=1e-12)
 
 
 def test_what_has_no_ellipse_is_refused():
