@@ -17,6 +17,7 @@ from anisocontact.contact.hints import (
     overlapping,
     pressed_aside,
 )
+from anisocontact.contact.narrow import NARROW
 from anisocontact.contact.tips import points_on_tips
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
@@ -204,6 +205,8 @@ def at_end(
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
+        if entry.get("narrow"):
+            found.append(f"{_pair(entry)}: {NARROW}")
         if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]

@@ -15,6 +15,7 @@ from typing import Any
 from anisocontact import __version__
 from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
+from anisocontact.contact.narrow import narrow_so_far
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint_times import Checkpoints
 from anisocontact.results.dataset import DataSet
@@ -337,8 +338,9 @@ class Writer:
         pairs = zip(numbers["contacts"], self._constants, strict=True)
         contacts = [constant | changing for changing, constant in pairs]
         before = self.summary.get("contacts", [{}] * len(contacts))
-        for entry, old in zip(contacts, before, strict=True):
+        for contact, entry, old in zip(self._problem.contacts, contacts, before, strict=True):
             entry.update(worst(entry, old, self.summary["time"]))
+            entry["narrow"] = narrow_so_far(contact, old.get("narrow"))
         self.summary.update(numbers, contacts=contacts)
 
     def _write_summary(self) -> None:
