@@ -61,8 +61,10 @@ class Compliant(Semismooth):
         return state, slip - np.where(held, elastic, 0.0)
 
     @override
-    def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
-        new = super().advance(start, traction, now, before)
+    def advance(
+        self, start: State, traction: Floats, now: Frames, before: Frames, left: Floats
+    ) -> State:
+        new = super().advance(start, traction, now, before, left)
         more = self.share * self._remembered(before)
         new["stored"] += np.einsum("nid,nd->ni", before.tangents, more)
         return new

@@ -133,11 +133,13 @@ class Layer:
         more = (1.0 - rest) * self._way.under(self._force - found)
         return state, slip + more
 
-    def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
+    def advance(
+        self, start: State, traction: Floats, now: Frames, before: Frames, left: Floats
+    ) -> State:
         """State with other multipliers, see `Semismooth.advance`."""
         new = start.copy()
         if self._normal is not None:
-            new = self._normal.advance(start, traction, now, before)
+            new = self._normal.advance(start, traction, now, before, left)
         normal = np.einsum("nd,nd->n", traction, now.normal)[:, None] * now.normal
         self._force = traction - normal
         self._shift(new, self._histories[0], self._way.under(self._force), now)

@@ -69,20 +69,26 @@ class Semismooth(Multipliers):
         new["multiplier"] = found[:, 0] * step.kept[:, 0]
         new["multiplier"][step.immovable] = step.start["multiplier"][step.immovable]
         if self.tangential:
-            self._hold(new, step.kept[:, :1] * found[:, 1:], step.before)
+            self._hold(new, step.left[:, 1:] * found[:, 1:], step.before, step.left)
         return new
 
-    def _hold(self, start: State, force: Floats, before: Frames) -> None:
+    def _hold(self, start: State, force: Floats, before: Frames, left: Floats) -> None:
         """Let points carry friction, those that close a gap but what its compliance leaves.
+
+        A point that is compliant along the normal bears more than its multiplier, and goes on by
+        what the penalty answers with the rest.
 
         Args:
             start: State of the trials, with the multipliers of the pressure, changed.
             force: At the committed coordinates, (n, 3), stress.
             before: Frames there.
+            left: What compliance leaves where no gap closes, as of `ContactTrial.left`.
         """
-        pressure = np.maximum(start["multiplier"], 0.0)
-        left = left_by(self.closeness(start, pressure, np.zeros(len(start))))
-        start["stored"] = np.einsum("nid,nd->ni", before.tangents, left[:, None] * force)
+        held = np.maximum(start["multiplier"], 0.0)
+        pressure = np.divide(held, left[:, 0], out=held.copy(), where=left[:, 0] > 0.0)
+        deep = (pressure - held) / (self.factors[0] * self._penalties[0])
+        share = left_by(self.closeness(start, pressure, -deep))
+        start["stored"] = np.einsum("nid,nd->ni", before.tangents, share[:, None] * force)
 
     def settled(self, step: ContactTrial) -> State | None:
         """As of `Multipliers.settled`: springs let a body glide on that nothing rubs against."""
@@ -214,7 +220,9 @@ class Semismooth(Multipliers):
         most = self.ratio if pressure * far == 0.0 else LEAST_RATIO * EXACT * pressure / rounded
         return float(np.clip(most, LEAST_RATIO, self.ratio))
 
-    def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
+    def advance(
+        self, start: State, traction: Floats, now: Frames, before: Frames, left: Floats
+    ) -> State:
         """State with other multipliers.
 
         Args:
@@ -222,13 +230,14 @@ class Semismooth(Multipliers):
             traction: lambda as a vector, (n, 3), stress.
             now: Frames where the points are.
             before: Frames at the committed coordinates.
+            left: What compliance leaves where no gap closes, (n, 2).
         """
         new = start.copy()
         normal = np.einsum("nd,nd->n", traction, now.normal)
         new["multiplier"] = normal
         if self.tangential:
             tangential = now.turned_to(before, traction - normal[:, None] * now.normal)
-            self._hold(new, tangential, before)
+            self._hold(new, tangential, before, left)
         return new
 
     def vector(self, step: ContactTrial) -> Floats:

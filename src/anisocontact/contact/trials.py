@@ -230,7 +230,7 @@ class Trials:
                 normal=now.normal,
                 status=self._now.response.status,
             )
-        self.start = semismooth.advance(self.start, traction, now, before)
+        self.start = semismooth.advance(self.start, traction, now, before, about.base.kept)
         self._let_go_of_immovable()
 
     def _let_go_of_immovable(self) -> None:
