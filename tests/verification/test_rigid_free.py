@@ -124,64 +124,68 @@ def test_the_energy_balance_converges(fe):
     assert left[2] < 0.01
 
 
-def test_springs_penalty_and_block_in_series(fe):
-    """Block in a stiff box on a die with springs: three springs in series, closed form.
+#: Height of the block, penalty, stiffness of adhesion; its material is that of `fe.block`.
+HEIGHT, PENALTY, STIFFNESS, YOUNG, NU = 0.5, 500.0, 800.0, 1000.0, 0.3
+SIDES = {"left": "x", "right": "x", "front": "y", "back": "y"}
 
-    Requirement: force and motion of the die within 1e-8. Source: normal, with w only through the
-    height, `F = d / (H/(M A) + 1/(eps A) + 1/k)`, M the oedometric modulus; tangential in stick
-    with sides that do not rise, `F = d / (H/(G A) + 1/(S A) + 1/k)`. Tolerance: both are linear
-    fields, exact in every element; Newton to 1e-12.
-    """
+
+def on_springs(fe, overlap, springs):
+    """A block that sticks to a die with springs, and the die."""
     from anisocontact.rigid import RigidBody
-    from anisocontact.solver import Step
 
-    height, penalty, stiffness, overlap, k = 0.5, 500.0, 800.0, 1e-12, {"z": 70.0, "x": 50.0}
-    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs=k)
+    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs=springs)
     law = fe.interface(
-        stiffness=(stiffness, stiffness),
+        stiffness=(STIFFNESS, STIFFNESS),
         coefficients=(50.0, 50.0),
-        penalty=penalty,
+        penalty=PENALTY,
         point=(0.0, 0.0, overlap),
     )
-    block = fe.block(law, body=die)
-    sides = {
-        "block.left": {"x": 0.0},
-        "block.right": {"x": 0.0},
-        "block.front": {"y": 0.0},
-        "block.back": {"y": 0.0},
-    }
-    press = 0.01
-    block.run(
-        Step("press", 1, sides | {"block.top": {"z": -press}}, motion={"die": {"z": None}}), **TIGHT
-    )
-    young, nu = 1000.0, 0.3
-    oedometric = young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    expected = (press + overlap) / (height / oedometric + 1.0 / penalty + 1.0 / k["z"])
+    return fe.block(law, body=die), die
+
+
+def test_spring_penalty_and_block_in_series(fe):
+    """Block in a stiff box on a die with a spring: three springs in series, closed form.
+
+    Requirement: force and motion of the die within 1e-8. Source: with w only through the height,
+    `F = d / (H/(M A) + 1/(eps A) + 1/k)`, M the oedometric modulus. Tolerance: the field is linear,
+    exact in every element; Newton to 1e-12.
+    """
+    from anisocontact.solver import Step
+
+    overlap, press, k = 1e-12, 0.01, 70.0
+    block, die = on_springs(fe, overlap, {"z": k})
+    held = {f"block.{side}": {axis: 0.0} for side, axis in SIDES.items()}
+    held["block.top"] = {"z": -press}
+    block.run(Step("press", 1, held, motion={"die": {"z": None}}), **TIGHT)
+    oedometric = YOUNG * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU))
+    expected = (press + overlap) / (HEIGHT / oedometric + 1.0 / PENALTY + 1.0 / k)
     force, _ = block.contact.resultant()
     assert force[2] == pytest.approx(expected, rel=1e-8)
-    assert die.accepted.translation[2] == pytest.approx(-expected / k["z"], rel=1e-8)
+    assert die.accepted.translation[2] == pytest.approx(-expected / k, rel=1e-8)
 
-    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs=k)
-    law = fe.interface(
-        stiffness=(stiffness, stiffness),
-        coefficients=(50.0, 50.0),
-        penalty=penalty,
-        point=(0.0, 0.0, 0.005),
-    )
-    block = fe.block(law, body=die)
-    flat = {f"block.{side}": {"z": 0.0} for side in ("left", "right", "front", "back")}
-    across = 0.002
-    top = {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}}
+
+def test_spring_adhesion_and_block_in_series(fe):
+    """The same across, in stick, with sides that do not rise.
+
+    Requirement: force and motion of the die within 1e-8. Source: `F = d / (H/(G A) + 1/(S A) +
+    1/k)`. Tolerance: the field is linear, exact in every element; Newton to 1e-12.
+    """
+    from anisocontact.solver import Step
+
+    across, k = 0.002, 50.0
+    block, die = on_springs(fe, 0.005, {"x": k})
+    held = {f"block.{side}": {"z": 0.0} for side in SIDES}
+    held["block.top"] = {"x": 0.0, "y": 0.0, "z": 0.0}
     block.run(
-        Step("press", 1, flat | top),
+        Step("press", 1, held),
         Step("shift", 2, {"block.top": {"x": across}}, motion={"die": {"x": None}}),
         **TIGHT,
     )
-    shear = young / (2.0 * (1.0 + nu))
-    expected = across / (height / shear + 1.0 / stiffness + 1.0 / k["x"])
+    shear = YOUNG / (2.0 * (1.0 + NU))
+    expected = across / (HEIGHT / shear + 1.0 / STIFFNESS + 1.0 / k)
     force, _ = block.contact.resultant()
     assert force[0] == pytest.approx(-expected, rel=1e-8)
-    assert die.accepted.translation[0] == pytest.approx(expected / k["x"], rel=1e-8)
+    assert die.accepted.translation[0] == pytest.approx(expected / k, rel=1e-8)
 
 
 def test_springs_alone(fe):
