@@ -15,6 +15,7 @@ from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
+from anisocontact.contact.eased_trials import EasedTrials
 from anisocontact.contact.energies import ContactEnergies
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.initial import check_start
@@ -23,7 +24,6 @@ from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.rounded_forces import levers
 from anisocontact.contact.side_of_master import SideOfMaster
-from anisocontact.contact.trials import Trials
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
@@ -104,7 +104,7 @@ class ContactPair:
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
-        self.trials = Trials(points, master, parts.law, self.state, self._comm)
+        self.trials = EasedTrials(points, master, parts.law, self.state, self._comm)
         self._energies = ContactEnergies(self.trials, len(self.state), self._comm)
         check_start(self, points.size)
         self._augmentation = augmentation = options.augmentation
