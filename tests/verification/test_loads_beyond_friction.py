@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -11,8 +13,12 @@ from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
+from anisocontact.laws import Friction
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver import Problem, Solver, Step, StoppedError
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import CoupledFace, Problem, Solver, Step, StoppedError
+from anisocontact.solver.stepping.failures import Failures
+from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.surfaces import make_surface
 
 
@@ -74,3 +80,38 @@ def test_loads_that_friction_holds_are_not_to_blame() -> None:
     with pytest.raises(StoppedError, match="no convergence in 0 Newton iterations"):
         options = {"snes_max_it": 0}
         list(Solver(problem, steps, options=options, limits=Limits(smallest=0.5)).run())
+
+
+@pytest.mark.parametrize(("moment", "said"), [(20.0, True), (2.0, False), (0.5, False)])
+def test_a_moment_far_beyond_friction_on_a_round_master_is_told(moment: float, said: bool) -> None:
+    """A block whose head is pressed on a ball and turned by a moment, where a part fails.
+
+    Requirement: the moment of the load, and what friction holds with the pressures of now, where
+    it is less than a third; what presses elsewhere could hold a little more. Source: `mu` times the
+    sum of forces and arms about the axis. Tolerance: four digits, and normals that lean by the
+    share of the radius of contact, 1 %.
+    """
+    model = build_box({"block": BoxSpec((-0.5, -0.5, 0), (1, 1, 1), (4, 4, 2))})
+    head = RigidBody("head", (0, 0, 1), free=True)
+    ball = make_surface("sphere", centre=(0, 0, -5), radius=5.0)
+    contact = Contact(model, "block.bottom", ball, Friction(coefficients=0.2))
+    rubber = {"block": make_material("neo-hookean", E=1000.0, nu=0.3)}
+    problem = Problem(model, rubber, [contact], coupled=[CoupledFace("block.top", head)])
+    steps = [
+        Step("press", 1, motion={"head": {"z": -0.02}}),
+        Step("load", 1, motion={"head": {"z": None}}, load={"head": {"z": -20.0}}),
+    ]
+    for _ in Solver(problem, steps).run():
+        pass
+    turn = Step("turn", 1, motion={"head": {"rz": None}}, load={"head": {"rz": moment}})
+    problem.begin(turn)
+    told = Failures(problem, []).hint(turn, RunPosition.beginning(0, 0.0, Limits()), 1)
+    if not said:
+        assert told == ""
+        return
+    assert told.startswith("the loads on body 'block' come to a moment of 20 about (0, 0, 1) ")
+    arms = np.linalg.norm(contact.points[:, :2], axis=1)
+    held = 0.2 * (contact.areas * contact.last.pressure) @ arms
+    (number,) = re.findall(r"friction holds ([\d.]+) there at most", told)
+    assert float(number) == pytest.approx(held, rel=0.01)
+    assert 0.5 < held < 2.0

@@ -10,7 +10,13 @@ from anisocontact.bulk.material_warnings import STRESSED
 from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
-from anisocontact.solver.stepping.overload import Overload, exhausted, reason_of, too_much_load
+from anisocontact.solver.stepping.overload import (
+    Overload,
+    exhausted,
+    far_beyond,
+    reason_of,
+    too_much_load,
+)
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.solver.system.problem import Problem
@@ -68,4 +74,5 @@ class Failures:
     def _overloads(self, step: Step, place: RunPosition) -> list[Overload]:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
         end, now = place.control.increment / step.increments, place.reached(step)
-        return too_much_load(self._problem, end, now) or exhausted(self._problem, now)
+        found = too_much_load(self._problem, end, now) or exhausted(self._problem, now)
+        return found or far_beyond(self._problem, end, now)

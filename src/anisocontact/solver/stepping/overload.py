@@ -35,6 +35,9 @@ AT_LIMIT = 0.9999
 #: Share of what friction can hold that the accepted loads have to have reached where the loads do
 #: not say what presses a body on, which changes along an increment, or loads of later ones count.
 NEARLY = 0.97
+#: Load over the limit of friction that is told with a failure even where pressures that move within
+#: the contact could change the limit: by less than that.
+FAR = 3.0
 #: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted.
 MANY = 2
 #: Smallest part, share of an increment, that is halved where friction would not hold its loads with
@@ -61,6 +64,8 @@ class Overload:
             that is open yet, or prescribed motion.
         further: Whether it is not told as the body rests further on, see `SlidingMotion`.
         pressed: Whether the loads themselves say what presses the body on.
+        far: Whether it is worth a word where an increment fails, as they are so far beyond that
+            what presses elsewhere would not do, and the body does not rest further on.
     """
 
     text: str
@@ -68,6 +73,7 @@ class Overload:
     certain: bool
     further: bool = False
     pressed: bool = False
+    far: bool = False
 
 
 def too_much_load(
@@ -95,6 +101,11 @@ def exhausted(problem: Problem, now: float) -> list[Overload]:
     """As of `too_much_load` at the end of the step, of bodies that friction hardly holds now."""
     found = _found(problem, driven(problem, 1.0, now), soon=True)
     return [one for one in found if one.told]
+
+
+def far_beyond(problem: Problem, fraction: float, now: float) -> list[Overload]:
+    """As of `too_much_load`, of loads without evidence enough but for their size."""
+    return [one for one in _found(problem, driven(problem, fraction, now)) if one.far]
 
 
 def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:
@@ -198,9 +209,11 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     told, grown = near or certain, float(then.force.sum() / points.force.sum())
     contacts = [contact for contact, _ in body.contacts]
     slide = SlidingMotion(found.motion, body.centre, body.size, body.loads, contacts, grown)
-    further = told and slide.rests(1.0 - found.held)
     pressed = by_load is not None
-    return Overload(text, told and not further, certain and not further, further, pressed)
+    far = pressed and found.held * FAR < 1.0
+    rests = (told or far) and slide.rests(1.0 - found.held)
+    good, further = not rests, told and rests
+    return Overload(text, told and good, certain and good, further, pressed, far and good)
 
 
 def _moves(problem: Problem) -> bool:
