@@ -31,9 +31,19 @@ class Frames:
         return cls(tangents, unit_normal(tangents))
 
     def vector(self, covector: Floats) -> Floats:
-        """Vectors (n, 3) of covariant components (n, 2)."""
+        """Vectors (n, 3) of covariant components (n, 2).
+
+        Where a correction has laid nodes of a facet on one line there are no such vectors: they
+        are not numbers, and the correction is taken back.
+        """
         metric = np.einsum("nid,njd->nij", self.tangents, self.tangents)
-        contra = np.linalg.solve(metric, covector[..., None])[..., 0]
+        try:
+            contra = np.linalg.solve(metric, covector[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            flat = np.linalg.det(metric) == 0.0
+            metric[flat] = np.eye(2)
+            contra = np.linalg.solve(metric, covector[..., None])[..., 0]
+            contra[flat] = np.nan
         return self.moved(contra)
 
     def moved(self, contra: Floats) -> Floats:
