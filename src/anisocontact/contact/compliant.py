@@ -31,6 +31,10 @@ class Compliant(Semismooth):
     exact: ClassVar[bool] = False
 
     @override
+    def closes_singly(self, sticks: bool) -> bool:
+        return False
+
+    @override
     def suit(self, stiffness: float) -> None:
         normal, tangential = np.minimum(stiffness / np.array(self._penalties), 1.0)
         self.level, self._proportion = float(normal), float(tangential / normal)

@@ -126,11 +126,9 @@ class Multipliers:
         limit: Violation that is none, length.
         tangential: Whether there are multipliers of the tangential part.
         exact: Whether no compliance is meant to stay, but where there is no other way.
-        closes_singly: Whether points close one at a time where they open and close in turn.
     """
 
     exact: ClassVar[bool] = True
-    closes_singly: ClassVar[bool] = False
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
@@ -140,6 +138,14 @@ class Multipliers:
         self.size, self.limit = size, augmentation.tolerance * size
         self._penalties = penalties
         self._comm = comm
+
+    def closes_singly(self, sticks: bool) -> bool:
+        """Whether points close one at a time where they open and close in turn.
+
+        Args:
+            sticks: Whether points have stuck lately.
+        """
+        return False
 
     @property
     def factors(self) -> tuple[float, float]:

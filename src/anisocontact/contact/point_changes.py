@@ -38,14 +38,15 @@ class PointChanges:
         """Take it that the next trial is where the master has moved and no node has yet."""
         self._fresh = True
 
-    def close_singly(self, own: Multipliers | None) -> bool:
+    def close_singly(self, own: Multipliers | None, sticks: bool) -> bool:
         """Let corrections close one point at a time; whether that is something else, collective.
 
         Args:
             own: Multipliers without a layer, if there are any.
+            sticks: Whether points have stuck lately.
         """
         before = self._active.singly
-        self._active.singly |= own is not None and own.closes_singly
+        self._active.singly |= own is not None and own.closes_singly(sticks)
         return self._active.singly is not before
 
     def with_master(

@@ -55,6 +55,10 @@ class Semismooth(Multipliers):
         """Itself."""
         return self
 
+    def closes_singly(self, sticks: bool) -> bool:
+        """Where nothing sticks: a point that closes changes nothing then but how bodies bend."""
+        return not sticks
+
     @property
     def stiff_factors(self) -> tuple[float, float]:
         """`factors` in the derivative."""
@@ -259,6 +263,10 @@ class Softer(Semismooth):
     #: Shares of the penalties that suit the bodies: normal, tangential.
     SHARES: ClassVar[tuple[float, float]] = (0.3, 0.1)
 
+    def closes_singly(self, sticks: bool) -> bool:
+        """Never: other penalties are another way out."""
+        return False
+
     def suit(self, stiffness: float) -> None:
         """Bring the penalties to a share of the stiffness of the bodies, see `Multipliers.suit`."""
         super().suit(stiffness)
@@ -286,6 +294,8 @@ class Slender(Softer):
 
 
 class Singly(Semismooth):
-    """The same; where corrections gain nothing they close one point at a time, see `ActiveSet`."""
+    """The same; where corrections gain nothing they close one point at a time, whatever sticks."""
 
-    closes_singly: ClassVar[bool] = True
+    def closes_singly(self, sticks: bool) -> bool:
+        """Always."""
+        return True

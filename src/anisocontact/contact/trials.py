@@ -209,9 +209,13 @@ class Trials:
         )
         return answer
 
-    def close_singly(self) -> bool:
-        """Let corrections close one point at a time; whether that is something else, collective."""
-        return self._changes.close_singly(self._without_layer)
+    def close_singly(self, sticks: bool) -> bool:
+        """Let corrections close one point at a time; whether that is something else, collective.
+
+        Args:
+            sticks: Whether points have stuck lately.
+        """
+        return self._changes.close_singly(self._without_layer, sticks)
 
     def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""

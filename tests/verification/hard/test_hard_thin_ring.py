@@ -1,9 +1,9 @@
 """A thin ring between rigid plates, from the first touch to where it lifts off in the middle.
 
-Requirement: no cut, at most 240 corrections in all; at half the way the same force there and back;
+Requirement: no cut, at most 100 corrections in all; at half the way the same force there and back;
 at first that of linear theory. Source: a ring pinched by P gives way by P R^3 (pi / 4 - 2 / pi) /
 (E I) [Timoshenko, Strength of Materials]; without friction there is one equilibrium. Tolerance:
-measured 190 corrections, 6e-8 and 0.4 %, as the first way is 0.5 % of the radius. Points by the
+measured 64 corrections, 6e-8 and 0.4 %, as the first way is 0.5 % of the radius. Points by the
 edge of the contact, where gap and pressure are both about zero, opened and closed in turn, and a
 correction that bends ended all contact.
 """
@@ -67,7 +67,7 @@ def test_pressed_until_it_lifts_off_and_let_go(to_the_end: Callable[..., Any]) -
     run = to_the_end(CASE)
     pinch, there, _, back = (run.force(step)[1] for step in ("pinch", "half", "press", "back"))
     assert not run.cuts
-    assert sum(a.iterations for a in run.accepted) <= 240
+    assert sum(a.iterations for a in run.accepted) <= 100
     np.testing.assert_allclose(back, there, rtol=1e-6)
     linear = 0.01 * E * THICK**3 / 12.0 / (np.pi / 4.0 - 2.0 / np.pi) / 2.0
     np.testing.assert_allclose(pinch, linear, rtol=0.012)

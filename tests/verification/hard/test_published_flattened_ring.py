@@ -10,7 +10,7 @@ and the force on a unit of depth
 
 Requirement: the force in every increment from there on, and corrections: what the plate touches is
 the two points, and the flat piece between them presses nothing. Tolerance: measured 0.06 %, a
-thickness of 1 / 50 of the radius; 178 corrections.
+thickness of 1 / 50 of the radius; 157 corrections.
 """
 
 from __future__ import annotations
@@ -73,4 +73,4 @@ def test_flattened_ring(to_the_end: Callable[..., Any]) -> None:
     inside = contact.points[:, 0] < apart - 0.5
     weights = contact.last.pressure / contact.last.pressure.sum()
     assert weights[inside].sum() < 0.01
-    assert sum(part.iterations for part in run.accepted) <= 200
+    assert sum(part.iterations for part in run.accepted) <= 170

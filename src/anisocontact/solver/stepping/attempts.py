@@ -323,10 +323,11 @@ def _following(
 ) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
-    Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller
-    penalties, at finite strain with those of slender bodies, then, where there are cycles, such
-    that begin with soft penalties, corrections that close one point at a time, and cycles with
-    penalties that suit the bodies, then shares of corrections with smaller penalties.
+    Corrections as long as the balance of forces allows, see `Backtracking`, which close one point
+    at a time where they gain nothing and nothing sticks, the same with smaller penalties, at finite
+    strain with those of slender bodies, then, where there are cycles, such that begin with soft
+    penalties, corrections that close one point at a time whatever sticks, and cycles with penalties
+    that suit the bodies, then shares of corrections with smaller penalties.
 
     Args:
         first: From the extrapolated state.

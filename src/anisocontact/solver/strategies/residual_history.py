@@ -43,7 +43,7 @@ class ResidualHistory:
         self._patience = patience
         self.residuals: list[float] = []
         self._contacts = contacts
-        self._begin = 0
+        self._begin, self._singly = 0, False
         self._touching: list[int] = []
         self._sticking: list[int] = []
 
@@ -62,8 +62,9 @@ class ResidualHistory:
         if self.residuals[-1] > DIVERGED * min(self.residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
         if self._idles():
-            if self._few_touch() and self._contacts.close_singly():
-                self._begin = len(self.residuals) - 1
+            sticks = max(self._sticking[-IDLE_OVER:]) > 0
+            if not self._singly and self._few_touch() and self._contacts.close_singly(sticks):
+                self._begin, self._singly = len(self.residuals) - 1, True
                 return None
             return reasons.DIVERGED_LOCAL_MIN
         if not (searching or damped) and self._cycles():
@@ -82,11 +83,14 @@ class ResidualHistory:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
         if not self._contacts.simultaneous:
             return False
-        known, touching = self.residuals[self._begin :], self._touching[self._begin :]
+        if self._singly:
+            # the residual is that of other points each time; without any the body has sprung away
+            return self._touching[-1] == 0 or self._cycles()
+        known, touching = self.residuals, self._touching
         if len(known) < IDLE_OVER + 3:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
-        searches = lately > before or self._slips_on() or (lately == 0 and not self._begin)
+        searches = lately > before or self._slips_on() or lately == 0
         if searches or self._falls() or self._recedes():
             return False
         return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])

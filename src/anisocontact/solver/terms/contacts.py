@@ -145,9 +145,13 @@ class Contacts(Term):
         """Whether multipliers follow every correction of Newton's method."""
         return any(one.simultaneous for one in self._trials)
 
-    def close_singly(self) -> bool:
-        """Let corrections close one point of a contact at a time; whether they did not before."""
-        return any([one.close_singly() for one in self._trials])
+    def close_singly(self, sticks: bool) -> bool:
+        """Let corrections close one point of a contact at a time; whether they did not before.
+
+        Args:
+            sticks: Whether points have stuck lately.
+        """
+        return any([one.close_singly(sticks) for one in self._trials])
 
     def consistent(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
