@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any, Unpack
 
 import numpy as np
@@ -16,6 +17,7 @@ from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact.beyond_cuts import Seam
 from anisocontact.contact.contact_pair import ContactPair
 from anisocontact.contact.defaults import WithoutPenalty, exact
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.pair_parts import (
     DeprecatedArguments,
@@ -30,6 +32,7 @@ from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.description import compared
 from anisocontact.mesh import Model
 from anisocontact.mesh.at_rest import check_at_rest
+from anisocontact.mesh.idealisation import ON_AXIS
 from anisocontact.rigid import MovingSurface, RigidBody
 
 
@@ -294,8 +297,32 @@ class Contact(ContactPair, OneHistory, Uncopied):
         Returns:
             Force (3,) and moment (3,), force and force times length.
         """
-        total = self._comm.allreduce(self.accepted.wrench(np.asarray(about)))
+        total = self._comm.allreduce(self.wrench(self.accepted, np.asarray(about)))
         return total[:3], total[3:] * self.model.idealisation.moments
+
+    def wrench(self, now: Snapshot, about: Floats) -> Floats:
+        """Force and moment on the slave in some state over the points of this rank, (6,).
+
+        A node on an axis of revolution has a force along that alone, by symmetry: on the tip of a
+        surface its normal is one of those around, by rounding.
+
+        Args:
+            now: The points.
+            about: Point of the moment, (3,), length.
+        """
+        on_axis = self._on_axis
+        if not on_axis.any():
+            return now.wrench(about)
+        traction = now.response.traction.copy()
+        traction[on_axis] *= (0.0, 1.0, 0.0)
+        return now.wrench(about, traction)
+
+    @cached_property
+    def _on_axis(self) -> Flags:
+        """Slave points on the axis of a body of revolution, (n,)."""
+        x = self.slave_points.quadrature.reference
+        least = ON_AXIS * float(np.abs(self.model.mesh.geometry.x).max(initial=0.0))
+        return np.asarray((x[:, 0] <= least) & self.model.idealisation.turn.any())
 
     def turn(self) -> float:
         """Angle by which normal, axes of adhesion or slave turn where friction acts, radian.

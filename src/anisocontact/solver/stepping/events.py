@@ -238,7 +238,7 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
 
     if until.contact is not None:
         contact, comm = _contact(problem, until, field), problem.comm
-        return lambda x: of(comm.allreduce(contact.current.wrench(np.zeros(3))[:3]))
+        return lambda x: of(comm.allreduce(contact.wrench(contact.current, np.zeros(3))[:3]))
     if until.displacement is not None:
         group = until.displacement
         weights = node_shares(problem.model, group, f"{field}.displacement")

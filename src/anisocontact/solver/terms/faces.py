@@ -21,6 +21,9 @@ from anisocontact.rigid.rotation import skew
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.handed_rows import HandedRows
 
+#: Way per angle of a turn, over the largest distance from the reference point, that is none.
+ROUNDING = 1e-9
+
 
 @typed
 @dataclass(frozen=True)
@@ -124,9 +127,13 @@ class FaceOnBody:
         Args:
             components: Components of its translation and turn that are prescribed, (6,).
         """
-        turns = components[3:]
-        along = components[:3] & np.roll(turns, 1) & np.roll(turns, 2)
-        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.constrained & along])
+        still = np.tile(components[:3], (len(self.nodes), 1))
+        nothing = ROUNDING * float(np.abs(self.everywhere[1]).max(initial=0.0))
+        for axis in np.eye(3)[~components[3:]]:
+            way = np.cross(axis, self.arms)
+            # at finite strain nodes leave the place where a turn does not move them
+            still &= np.abs(way) <= nothing if self._linear else axis > 0.0
+        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.constrained & still])
 
     def displacements(self) -> Floats:
         """Where the trial of the body has the nodes, (n, 3), length."""
