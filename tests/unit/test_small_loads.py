@@ -58,3 +58,66 @@ def test_other_causes_are_not_taken_for_rounding(tmp_path):
     code, said = ends_with(tmp_path, "st-venant-kirchhoff", -1e4)
     assert code == 3
     assert "rounding" not in said
+
+
+COLLAR = """
+idealisation.kind = "plane-strain"
+solver.smallest_increment = 1
+[mesh.rectangle.left]
+origin = [-1.5, 2]
+size = [0.5, 0.5]
+cells = [4, 4]
+[mesh.rectangle.right]
+origin = [1, -2.5]
+size = [0.5, 0.5]
+cells = [4, 4]
+[material.left]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+[material.right]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+[surface.wallleft]
+shape = "plane"
+point = [-1, 0, 0]
+normal = [-1, 0, 0]
+[surface.wallright]
+shape = "plane"
+point = [1, 0, 0]
+normal = [1, 0, 0]
+[rigid.collar]
+faces = ["left.left", "right.right"]
+reference = [7, 0, 0]
+[[contact]]
+slave = "left.right"
+master = "wallleft"
+friction = { coefficients = 0.3 }
+[[contact]]
+slave = "right.left"
+master = "wallright"
+friction = { coefficients = 0.3 }
+[[step]]
+name = "load"
+increments = 1
+motion = { collar = { x = "free", y = "free", rz_deg = "free" } }
+load = { collar = { y = -1 } }
+"""
+
+
+def test_rounding_of_what_slid_away_is_no_small_load(tmp_path):
+    """A collar on a rod holds a load on an arm of half of its length over the friction [Coulomb].
+
+    Requirement: one with a shorter arm slides down, and that is told, not that its load is small;
+    the unbalanced force that is left is rounding of the forces inside what went far.
+    """
+    (tmp_path / "case.toml").write_text(COLLAR)
+    run = subprocess.run(
+        [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 3
+    said = run.stdout + run.stderr
+    assert SMALL not in said
+    assert "contact and friction do not hold the loads" in said

@@ -97,4 +97,4 @@ def test_all_that_goes_back_to_zero(off, reached):
     3.6e-15, sixteen times the precision of a number.
     """
     there = np.array([off, 0.0])
-    assert prescribed_reached(there, there, MPI.COMM_SELF, 1.0, there) is reached
+    assert prescribed_reached(there, there, MPI.COMM_SELF, 1.0, there, there).prescribed is reached

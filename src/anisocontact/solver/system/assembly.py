@@ -15,7 +15,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.fields import Fields
-from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
+from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, Reached, closed
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.prescribed_reached import prescribed_reached
 from anisocontact.solver.terms.bodies import Bodies
@@ -149,7 +149,7 @@ class Assembly:
             reached=self._reached(trial, np.append(rows, follow), np.append(off, astray)),
         )
 
-    def _reached(self, trial: TrialState, rows: Ints, off: Floats) -> bool:
+    def _reached(self, trial: TrialState, rows: Ints, off: Floats) -> Reached:
         """See `prescribed_reached`; displacements `rows` are off by a length each."""
         prescribed = self.rigid.prescribed()
         where = np.append(trial.x.array_r[rows], trial.rigid[prescribed])

@@ -46,6 +46,19 @@ class FieldBalance:
 
 
 @dataclass(frozen=True)
+class Reached:
+    """Where displacements have got to.
+
+    Attributes:
+        prescribed: Whether all are where they are prescribed, see `prescribed_reached`.
+        far: The largest where it is larger than all bodies together are long, else 0.
+    """
+
+    prescribed: bool = True
+    far: float = 0.0
+
+
+@dataclass(frozen=True)
 class ForceBalance:
     """Forces at a state, of the unknowns this rank owns.
 
@@ -63,6 +76,7 @@ class ForceBalance:
         fields: Of a mixed problem the balance of each field, the displacement first.
         reached: Whether displacements are where they are prescribed, see `prescribed_reached`.
         rounded: Residual that floating point leaves however small the loads are, force.
+        far: See `Reached.far`.
     """
 
     residual: Floats
@@ -74,6 +88,7 @@ class ForceBalance:
     fields: tuple[FieldBalance, ...] = ()
     reached: bool = True
     rounded: float = 0.0
+    far: float = 0.0
 
     @classmethod
     def none(cls, owned: int) -> ForceBalance:
@@ -86,8 +101,14 @@ class ForceBalance:
         Args:
             norm: Of the residual, force.
         """
-        if norm > self.rounded or self.rounded <= self.round_off:
+        if not norm <= self.rounded or self.rounded <= self.round_off:
             return ""
+        if self.far:
+            return (
+                f"which may be rounding of the forces inside bodies, as these went {self.far:.3g} "
+                "far, more than all is long: where that is not prescribed, contact and friction do "
+                "not hold the loads on them; load them less, or lead them by displacements"
+            )
         return (
             "which may be rounding of the forces inside bodies, beside which loads are small: "
             "larger loads, or a material at small strain"
@@ -128,6 +149,10 @@ class Magnitudes:
         return ROUND_OFF * self.stiff
 
 
+#: All that is prescribed, and nothing is far.
+EVERYTHING = Reached()
+
+
 def closed(
     residual: Floats,
     sizes: Magnitudes,
@@ -137,7 +162,7 @@ def closed(
     correction: Floats | None,
     forces: tuple[Floats, Floats] | None = None,
     fields: tuple[FieldBalance, ...] = (),
-    reached: bool = True,
+    reached: Reached = EVERYTHING,
 ) -> ForceBalance:
     """A balance of forces from its residual; collective.
 
@@ -150,7 +175,7 @@ def closed(
             multipliers follow.
         forces: See `ForceBalance.outside` and `ForceBalance.load`; none if left out.
         fields: See `ForceBalance.fields`.
-        reached: See `ForceBalance.reached`.
+        reached: Where displacements have got to.
     """
     if comm.allreduce(failed):
         residual[:] = np.nan
@@ -161,8 +186,9 @@ def closed(
         residual = residual - correction
     outside, load = forces or (np.zeros(0), np.zeros(0))
     scale, round_off = sizes.force_scale, sizes.round_off
+    got, far = reached.prescribed, reached.far
     return ForceBalance(
-        residual, norm, scale, round_off, outside, load, fields, reached, sizes.rounded
+        residual, norm, scale, round_off, outside, load, fields, got, sizes.rounded, far
     )
 
 

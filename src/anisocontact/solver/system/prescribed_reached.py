@@ -8,15 +8,15 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI
-from anisocontact.solver.system.force_balance import ROUND_OFF
+from anisocontact.solver.system.force_balance import ROUND_OFF, Reached
 
 #: How far displacements may be from what is prescribed, over the largest of those.
 TOLERANCE = 1e-8
 
 
 def prescribed_reached(
-    off: Floats, given: Floats, comm: Any, extent: float, *everywhere: Floats
-) -> bool:
+    off: Floats, given: Floats, comm: Any, extent: float, nodal: Floats, rigid: Floats
+) -> Reached:
     """Whether all that is prescribed, or follows from other unknowns, is where it is to be.
 
     Forces do not tell: their scale is that of bodies at rest, and where these have become 1e7 times
@@ -29,13 +29,16 @@ def prescribed_reached(
         comm: Communicator.
         extent: Of the mesh on this rank, length. Its rounding, and that of displacements, is near
             enough: where all goes back to zero there is nothing else to compare with.
-        everywhere: All displacements of this rank.
+        nodal: Displacements of all nodes of this rank, length.
+        rigid: Those of rigid bodies.
     """
     size = max(_largest(given), _largest(given - off))
-    largest = np.array([_largest(off), size, max(extent, *map(_largest, everywhere))])
+    largest = np.array([_largest(off), size, _largest(rigid), _largest(nodal), extent])
     comm.Allreduce(MPI.IN_PLACE, largest, MPI.MAX)
-    error, size, length = largest
-    return bool(error <= max(TOLERANCE * size, ROUND_OFF * length))
+    error, size, *lengths = largest
+    reached = bool(error <= max(TOLERANCE * size, ROUND_OFF * max(lengths)))
+    _, moved, extent = lengths
+    return Reached(reached, moved if moved > extent else 0.0)
 
 
 def _largest(values: Floats) -> float:
