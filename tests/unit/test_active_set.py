@@ -28,6 +28,7 @@ def changed(
     singly: bool,
     kept: bool = False,
     fixed: tuple[int, ...] = (),
+    needed: bool = False,
 ) -> tuple[list[int] | None, Floats]:
     """Points that press after they are restrained, None if they are not; and their pressures."""
     start = np.zeros(len(gap), dtype=STATE)
@@ -35,7 +36,7 @@ def changed(
     gaps = np.array(gap)
     pressure = pressures(start, gaps)
     numbers = np.arange(len(gap))
-    active = ActiveSet(MPI.COMM_SELF)
+    active = ActiveSet(MPI.COMM_SELF, needed)
     active.singly = singly
     own = Multipliers(Augmentation(), 1.0, (PENALTY, PENALTY), MPI.COMM_SELF)
     about, free = Active(np.isin(numbers, before), kept), np.isin(numbers, fixed)
@@ -83,3 +84,11 @@ def test_a_correction_does_not_end_all_contact(gap: float) -> None:
 def test_points_that_have_gone_away_are_let_go() -> None:
     """Beyond a share of a facet, 1e-4, the correction has not brought them to the master."""
     assert changed([-5.0, 0.0], [2e-4, 0.1], [0], singly=False)[0] is None
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_a_body_that_contact_alone_holds_keeps_what_presses(kept: bool) -> None:
+    """All open, 0 and 1 are pressed, 1 more than a facet away: 0 stays, also the next time."""
+    multiplier, gap = [5.0, 5.0, -5.0], [0.02, 2.0, 1e-5]
+    assert changed(multiplier, gap, [0, 1], singly=False, needed=True, kept=kept)[0] == [0]
+    assert changed(multiplier, gap, [0, 1], singly=False, kept=kept)[0] is None

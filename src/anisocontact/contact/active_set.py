@@ -10,7 +10,8 @@ and when there are none, the one that is deepest in the master closes.
 Neither does one correction end all contact. Bending turns what it pushes, and to the square of
 the turn a correction strains a slender body along itself: that asks for a pull at the contact,
 which the next correction at the same points takes away. Without contact the body would spring back
-to where it was, far inside the master.
+to where it was, far inside the master. A body that contact alone holds would have nothing left to
+be in balance with: there points that are pressed stay, wherever the correction has led them.
 """
 
 from __future__ import annotations
@@ -53,14 +54,16 @@ class ActiveSet:
 
     Args:
         comm: Communicator over whose ranks the points are spread.
+        needed: Whether contact alone holds a body here.
 
     Attributes:
+        needed: As given.
         singly: Whether corrections close one point at a time.
         kept: Whether the last correction had ended all contact, which was kept.
     """
 
-    def __init__(self, comm: Any) -> None:
-        self._comm = comm
+    def __init__(self, comm: Any, needed: bool = False) -> None:
+        self._comm, self.needed = comm, needed
         self.singly = self.kept = False
 
     def restrained(
@@ -92,12 +95,12 @@ class ActiveSet:
         self.kept, now = False, pressure > 0.0
         penalty = float(own.penalties[0])
         closes = now & ~before.closed & ~fixed
-        touches = before.closed & ~fixed & (gap <= NEAR * own.size)
+        touches = before.closed & ~fixed & self._near(start, gap, own.size)
         deep = np.where(closes, -gap, -np.inf)
         counts = [now.sum(), touches.sum(), (before.closed & ~now).sum(), closes.sum()]
         found = self._comm.allgather([*map(float, counts), float(deep.max(initial=-np.inf))])
         pressed, touching, opened, closing = np.sum([one[:4] for one in found], axis=0)
-        if touching and not pressed and not before.kept:
+        if touching and not pressed and (self.needed or not before.kept):
             self.kept = True
             return self._with(start, touches, self._closed(start, penalty * gap))
         if not self.singly or not closing or (closing == 1 and not opened):
@@ -105,6 +108,15 @@ class ActiveSet:
         deepest = np.inf if opened else max(one[4] for one in found)
         held = closes & (deep < deepest)
         return self._with(start, held, self._open(start, penalty * gap))
+
+    def _near(self, start: State, gap: Floats, size: float) -> Flags:
+        """Points that a correction has brought to the master, (n,).
+
+        Where contact alone holds a body so are those that it presses, up to a facet from it: their
+        gap is what the correction has left to the square of a turn, which the next one takes away.
+        """
+        pressed = self.needed & (start["multiplier"] > 0.0)
+        return np.asarray(gap <= np.where(pressed, size, NEAR * size))
 
     @staticmethod
     def _with(start: State, points: Flags, multiplier: Floats) -> State:

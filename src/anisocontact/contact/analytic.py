@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self, override
@@ -9,12 +10,12 @@ from typing import Any, Self, override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.array_types import Codes, Floats, Locals
+from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.base.processes import on_all
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.integration_points import IntegrationPoints
-from anisocontact.contact.master import Master
+from anisocontact.contact.master import Master, Resting
 from anisocontact.contact.quadrature import Couplings, Surfaced
 from anisocontact.contact.side_of_master import Seen, SideOfMaster
 from anisocontact.interface import Interface, SlaveSurface, State
@@ -25,6 +26,8 @@ from anisocontact.rigid.body import Pose
 from anisocontact.surfaces import PROJECTION_STATUS
 
 _INTERIOR = PROJECTION_STATUS.index("interior")
+#: Component of a direction along a normal, or beside other directions, that is none.
+ROUNDED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -119,6 +122,7 @@ class AnalyticMaster(Master):
         self.extent = interface.surface.extent
         self._way = np.zeros_like(slave.quadrature.reference)
         self._there = slave.quadrature.at_rest
+        self._resting: list[tuple[Flags, Floats]] = []
         self.take(interface, interface)
 
     @override
@@ -132,6 +136,26 @@ class AnalyticMaster(Master):
 
     def _on_body(self, laws: Any) -> Any:
         return laws if self.body is None else MovingInterface(laws, self.body)
+
+    @override
+    def take_resting(self, resting: Sequence[Resting], state: State) -> None:
+        at = ((self._slave.all_of(there), direction) for there, direction in resting)
+        self._resting = [(points, direction) for points, direction in at if points.any()]
+
+    @override
+    def resting(self, normal: Floats) -> Floats | None:
+        if not self._resting:
+            return None
+        out = np.zeros((len(normal), 3, 3))
+        for points, direction in self._resting:
+            if self.body is None or self.body.rests_along(direction):
+                along = self.into_frame(direction)
+                which = points & (np.abs(normal @ along) < ROUNDED)
+                rest = along - out[which] @ along
+                size = np.linalg.norm(rest, axis=1)
+                unit = rest[size > ROUNDED] / size[size > ROUNDED, None]
+                out[np.flatnonzero(which)[size > ROUNDED]] += unit[:, :, None] * unit[:, None]
+        return out
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:

@@ -82,6 +82,12 @@ class IntegrationPoints:
         free = free_along(fixed, nodes, self.shape != 0.0, normal)
         return np.asarray(free.max(axis=1) < FREE)
 
+    def all_of(self, there: Flags) -> Flags:
+        """Points all of whose nodes are among some local ones, images of nodes not, (n,)."""
+        at = self.nodes % max(len(there), 1)
+        among = (self.nodes < len(there)) & there[at]
+        return np.asarray((among | (self.shape == 0.0)).all(axis=1))
+
     def peaks(self, areas: Floats) -> Flags:
         """Points whose tractions count among peaks, of those with some areas, (n,)."""
         return np.ones(len(areas), dtype=bool)

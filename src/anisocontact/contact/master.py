@@ -193,6 +193,16 @@ class Master(Protocol):
         """
         return None
 
+    def resting(self, normal: Floats) -> Floats | None:
+        """Projection on directions across which neither points nor master move, (n, 3, 3), if any.
+
+        Tractions of the trial have what multipliers have along them.
+
+        Args:
+            normal: Of the surface, in its frame, (n, 3).
+        """
+        return None
+
     def take_fixed(self, fixed: Floats) -> None:
         """Learn along which directions local nodes are prescribed; collective.
 

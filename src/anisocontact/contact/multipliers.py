@@ -126,9 +126,11 @@ class Multipliers:
         limit: Violation that is none, length.
         tangential: Whether there are multipliers of the tangential part.
         exact: Whether no compliance is meant to stay, but where there is no other way.
+        faint: Whether penalties are so soft that forces hardly tell what multipliers violate.
     """
 
     exact: ClassVar[bool] = True
+    faint: ClassVar[bool] = False
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any

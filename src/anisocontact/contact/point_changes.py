@@ -21,17 +21,19 @@ class PointChanges:
         comm: Communicator of the mesh.
 
     Attributes:
+        needed: Whether contact alone holds a body here.
         reversals: Which points slide to and fro.
     """
 
     def __init__(self, comm: Any) -> None:
         self._comm, self._fresh = comm, False
+        self.needed = False
         self._active = ActiveSet(comm)
         self.reversals = SlipReversals(comm)
 
     def begin(self) -> None:
         """Forget all of another increment."""
-        self._active, self._fresh = ActiveSet(self._comm), False
+        self._active, self._fresh = ActiveSet(self._comm, self.needed), False
         self.reversals.begin()
 
     def expect_motion(self) -> None:

@@ -285,6 +285,7 @@ class Slender(Softer):
     """
 
     SHARES: ClassVar[tuple[float, float]] = (3e-4, 3e-4)
+    faint: ClassVar[bool] = True
     ratio: ClassVar[float] = RATIO / SHARES[0]
 
     def _resolved(self, step: ContactTrial) -> float:

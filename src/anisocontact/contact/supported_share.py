@@ -44,6 +44,20 @@ def supported_share(
     return np.asarray(traction - along + np.where(kept[:, None], before, less))
 
 
+def kept_along(resting: Floats, traction: Floats, last: Floats) -> Floats:
+    """Tractions that keep what they had along directions in which nothing moves, (n, 3), stress.
+
+    No equilibrium determines them there, and nothing slips: what a trial before equilibrium has
+    slipped, as one that is extrapolated, would stay as friction.
+
+    Args:
+        resting: Projections on the directions, (n, 3, 3).
+        traction: Of the points, (n, 3), stress.
+        last: Tangential traction of the last accepted increment, (n, 3), stress.
+    """
+    return np.asarray(traction + (resting @ (last - traction)[..., None])[..., 0])
+
+
 class SupportedPoints:
     """What supports take of the tractions of an increment.
 

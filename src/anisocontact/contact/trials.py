@@ -21,7 +21,7 @@ from anisocontact.contact.point_changes import PointChanges
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
 from anisocontact.contact.slivers import Slivers
-from anisocontact.contact.supported_share import SupportedPoints
+from anisocontact.contact.supported_share import SupportedPoints, kept_along
 from anisocontact.contact.trial_laws import TrialLaws
 from anisocontact.interface import State
 
@@ -116,6 +116,10 @@ class Trials:
         change, frames = self.master.into_frame(change), self._frames(self.start)
         self._start_from(self._own.extrapolated(self.start, change, frames))
 
+    def hold_alone(self, needed: bool) -> None:
+        """Take it that contact alone holds a body here from the next increment on, or that not."""
+        self._changes.needed = needed
+
     def expect_motion(self) -> None:
         """Take it that the next trial is where the master has moved and no node has yet."""
         self._changes.expect_motion()
@@ -209,6 +213,11 @@ class Trials:
         )
         return answer
 
+    @property
+    def faint(self) -> bool:
+        """Whether multipliers have penalties as of `Multipliers.faint`."""
+        return self._own is not None and self._own.faint
+
     def close_singly(self, sticks: bool) -> bool:
         """Let corrections close one point at a time; whether that is something else, collective.
 
@@ -225,15 +234,19 @@ class Trials:
         now = self._frames(self.master.here(self.start, dt))
         before = self._frames(self.start)
         traction = about.base.after(change, semismooth.share, now.normal)
-        if semismooth.tangential and self.multipliers.exact and self.master.held is not None:
-            traction = self._supports.bounded(
-                traction,
-                self.master.held,
-                last=before.turned_to(now, before.vector(self._state["stored"])),
-                carried=about.base.traction,
-                normal=now.normal,
-                status=self._now.response.status,
-            )
+        if semismooth.tangential and self.multipliers.exact:
+            last = before.turned_to(now, before.vector(self._state["stored"]))
+            if self.master.held is not None:
+                traction = self._supports.bounded(
+                    traction,
+                    self.master.held,
+                    last=last,
+                    carried=about.base.traction,
+                    normal=now.normal,
+                    status=self._now.response.status,
+                )
+            elif (resting := self.master.resting(now.normal)) is not None:
+                traction = kept_along(resting, traction, last)
         self.start = semismooth.advance(self.start, traction, now, before, about.base.kept)
         self._let_go_of_immovable()
 

@@ -146,6 +146,16 @@ class RigidBody(OneHistory):
             values[component_number(name, name)] = value
         self.place(values)
 
+    def rests_along(self, direction: Floats) -> bool:
+        """Whether the trial has neither turned nor moved along a direction since it was accepted.
+
+        Args:
+            direction: In space, (3,).
+        """
+        now, last = self.trial, self.accepted
+        moved = (now.translation - last.translation) @ direction
+        return moved == 0.0 and np.array_equal(now.turn, last.turn)
+
     def commit(self) -> None:
         """Accept the trial."""
         now = self.trial

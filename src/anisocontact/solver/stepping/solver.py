@@ -12,7 +12,9 @@ from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
 from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact import warn_of
+from anisocontact.contact.multiplier_schemes import SLENDER
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
+from anisocontact.solver.stepping.bending import bend
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
@@ -273,12 +275,14 @@ class Solver(Uncopied):
         """
         place, control = self.place, self.place.control
         self._check_alone()
-        if not place.begun:
+        if begins := not place.begun:
             self.problem.begin(step)
             self._begun = self.problem.begun
             self._turns.begin()
             self._predictor.forget()
             place.begun = True
+        if bend(self.problem) and begins:
+            control.way = SLENDER
         prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
         if ambiguous := half_turns(prescribed, self.limits.smallest):

@@ -104,6 +104,7 @@ class NewtonIteration:
         fields = balance.of_fields(norm)
         relative = max(field.relative(rtol) for field in fields)
         self.residuals.append(relative)
+        self._history.violations.append(norms[2])
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF

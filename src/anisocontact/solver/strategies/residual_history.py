@@ -17,6 +17,8 @@ STUCK, STUCK_OVER = 0.5, 8
 #: With multipliers that follow a residual rises and falls while points find their status; it goes
 #: round in circles where the least of so many is more than this share of the least before, while
 #: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
+#: With penalties of slender bodies forces balance before the points have their status, as gaps
+#: count for next to nothing: what multipliers violate has to stay as well.
 IDLE, IDLE_OVER = 0.5, 5
 #: Share of the least residual so far that one which has come nearer keeps at most.
 NEARER = 0.95
@@ -37,11 +39,13 @@ class ResidualHistory:
 
     Attributes:
         residuals: Residual over the forces at work, of the start and after each correction.
+        violations: Norm of the same with the forces that are to take away what multipliers violate.
     """
 
     def __init__(self, contacts: Contacts, patience: float = PATIENCE) -> None:
         self._patience = patience
         self.residuals: list[float] = []
+        self.violations: list[float] = []
         self._contacts = contacts
         self._begin, self._singly = 0, False
         self._touching: list[int] = []
@@ -93,7 +97,7 @@ class ResidualHistory:
         searches = lately > before or self._slips_on() or lately == 0
         if searches or self._falls() or self._recedes():
             return False
-        return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+        return _keeps(known) and not (self._contacts.faint and not _keeps(self.violations))
 
     def _falls(self) -> bool:
         """Whether it falls with every correction, and by half over some.
@@ -152,6 +156,11 @@ class ResidualHistory:
         """Whether a line search gains next to nothing."""
         known = self.residuals
         return len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
+
+
+def _keeps(known: Sequence[float]) -> bool:
+    """Whether the least of the last norms is more than a share of the least before."""
+    return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
 
 def repeats(residuals: Sequence[float], period: int = 2) -> bool:

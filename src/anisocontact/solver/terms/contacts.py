@@ -25,6 +25,7 @@ class Contacts(Term):
 
     Attributes:
         meshed: Those against facets.
+        bends: Whether a body is so slender that it bends before it is strained.
     """
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
@@ -33,7 +34,7 @@ class Contacts(Term):
         self._trials = [contact.trials for contact in self._all]
         self.meshed = [contact for contact in self._all if contact.meshed]
         self._smooth = [contact for contact in self._all if not contact.meshed]
-        self._dt = 1.0
+        self._dt, self.bends = 1.0, False
         self._failed = False
 
     @override
@@ -144,6 +145,11 @@ class Contacts(Term):
     def simultaneous(self) -> bool:
         """Whether multipliers follow every correction of Newton's method."""
         return any(one.simultaneous for one in self._trials)
+
+    @property
+    def faint(self) -> bool:
+        """Whether forces hardly tell what multipliers violate: penalties of bodies that bend."""
+        return self.bends and any(one.faint for one in self._trials)
 
     def close_singly(self, sticks: bool) -> bool:
         """Let corrections close one point of a contact at a time; whether they did not before.

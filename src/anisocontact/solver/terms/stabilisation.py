@@ -89,7 +89,7 @@ class Stabilisation(Term):
         self.notes: list[str] = []
         self.flow = ViscousFlow(model, scale)
         self._scale = scale
-        self._comm = model.mesh.comm
+        self._comm, self._contacts = model.mesh.comm, contacts
         self._motion = BodyMotion(contacts, attached, self._comm)
         self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
@@ -180,6 +180,8 @@ class Stabilisation(Term):
         self._motion.held, self._motion.frames = list(supported), list(frames)
         for free in self._unsupported.found(supported, step, load, frames):
             self._add(free, step, now)
+        for contact in self._contacts:
+            contact.trials.hold_alone(any(free.meets(contact) for free in self._loose))
 
     def take_notes(self) -> list[str]:
         """`notes`, each of them once."""

@@ -1,0 +1,37 @@
+"""Whether bodies that contact alone holds bend, so that multipliers are sought by what bends."""
+
+from __future__ import annotations
+
+from anisocontact.contact.multiplier_schemes import SLENDER
+from anisocontact.mesh.slenderness import slenderness
+from anisocontact.solver.system.problem import Problem
+
+#: Length over thickness, see `slenderness`, from which on bodies bend before they are strained: a
+#: bore or tyre, whose faces are held, has 14 to 19.
+BENDS = 25.0
+
+
+def bend(problem: Problem) -> bool:
+    """Whether the penalties of what bends come first in a step; collective.
+
+    A slender body at finite strain turns by much of what a correction moves it, and that leaves
+    gaps which usual penalties take for a contact that opens: nothing would hold it then. The
+    contacts learn whether it is so.
+
+    Args:
+        problem: The problem, in a step.
+    """
+    contacts = problem.contact_term
+    contacts.bends = (
+        SLENDER in contacts.ways
+        and not problem.linear
+        and slenderness(problem.model, _held_by_contact(problem)) > BENDS
+    )
+    return contacts.bends
+
+
+def _held_by_contact(problem: Problem) -> set[str]:
+    """Bodies that contact alone holds, and no face that follows a rigid body keeps in shape."""
+    faces = problem.rigid.faces
+    kept = set() if faces is None else {face.group.split(".")[0] for face in faces.faces}
+    return {part for free in problem.stabilisation.loose for part in free.body.parts} - kept
