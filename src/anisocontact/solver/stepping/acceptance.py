@@ -16,6 +16,7 @@ from anisocontact.solver.stepping.convergence_diagnostics import inverted_cells,
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.rotations import CURE, WARNED
+from anisocontact.solver.terms.unsupported_rigid_body import flown
 
 #: Error of the gap of a point that is held on a facet, over the size of a facet, that is none.
 STRAYED = 1e-3
@@ -80,6 +81,17 @@ def rigid_body_overturns(problem: Problem, _: Vec) -> Refusal | None:
     return Refusal(reason) if reason else None
 
 
+def rigid_body_flies(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states to which loads alone have moved a free rigid body farther than all is long."""
+    rigid, extent = problem.rigid, problem.layout.unknowns.extent
+    if not rigid.free or problem.comm.allreduce(int(not (problem.supports.rest and rigid.rest))):
+        return None
+    extent = max(problem.comm.allgather(extent))
+    found = (flown(b, rigid.holds(b), rigid.contacts[b], extent, problem.comm) for b in rigid.free)
+    reason = next(filter(None, found), "")
+    return Refusal(reason) if reason else None
+
+
 def held_points_stray(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states in which points are held on a facet that is not the one below them."""
     found = strayed(problem, STRAYED)
@@ -112,6 +124,7 @@ CHECKS: tuple[Check, ...] = (
     cells_inside_out,
     energy_not_a_number,
     rigid_body_overturns,
+    rigid_body_flies,
     held_points_stray,
     behind_a_master,
     contact_lets_go,

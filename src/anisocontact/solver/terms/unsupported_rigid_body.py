@@ -77,6 +77,27 @@ def overturned(body: RigidBody, contacts: Sequence[Contact], comm: Any) -> str:
     return without_support(body, [named], contacts, comm)
 
 
+def flown(
+    body: RigidBody, held: Flags, contacts: Sequence[Contact], extent: float, comm: Any
+) -> str:
+    """Whether loads move a free body farther in this part than all is long; empty if not.
+
+    A correction has thrown it then: nothing that it touched is where it is now, and that it rests
+    there on something is chance. Collective.
+
+    Args:
+        body: The body, at a trial at which nothing is moved but by loads.
+        held: Which of its components something else than contact holds, (6,).
+        contacts: Its contacts, at a trial.
+        extent: Longest edge of a box around all bodies that deform, length.
+        comm: Communicator of the mesh.
+    """
+    way = np.where(held, 0.0, np.abs(body.trial.values - body.accepted.values))[:3]
+    if not float(np.linalg.norm(way)) > extent:
+        return ""
+    return without_support(body, [_NAMES[int(np.argmax(way))]], contacts, comm)
+
+
 def without_support(
     body: RigidBody, named: Sequence[str], contacts: Sequence[Contact], comm: Any
 ) -> str:
