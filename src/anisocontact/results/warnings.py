@@ -164,6 +164,11 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
     return found
 
 
+def narrow(shown: Sequence[dict[str, Any]]) -> list[str]:
+    """Contacts too narrow for pressures at points, by their entries in the summary."""
+    return [f"{_pair(entry)}: {NARROW}" for entry in shown if entry.get("narrow")]
+
+
 def at_end(
     contacts: Sequence[Contact],
     shown: Sequence[dict[str, Any]],
@@ -205,8 +210,6 @@ def at_end(
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
-        if entry.get("narrow"):
-            found.append(f"{_pair(entry)}: {NARROW}")
         if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]

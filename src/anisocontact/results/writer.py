@@ -31,7 +31,15 @@ from anisocontact.results.read import Results
 from anisocontact.results.report_process import Reporter, report_here
 from anisocontact.results.snapshot import Observer, exact_laws, laws
 from anisocontact.results.vtkhdf import write_vtkhdf
-from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
+from anisocontact.results.warnings import (
+    at_end,
+    at_start,
+    narrow,
+    of_models,
+    soft,
+    worst,
+    worst_of_models,
+)
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.stepping.increment_warnings import lasting, missed_event
 from anisocontact.solver.terms.persistent import Persistent
@@ -277,7 +285,7 @@ class Writer:
         relaxed = bool(self.summary.get("relaxed"))
         found = at_end(contacts, shown, self.summary["energy"], relaxed, self._at_start)
         if status == "done":  # a run that stopped has its reason
-            found += soft(contacts, shown, relaxed)
+            found += [*soft(contacts, shown, relaxed), *narrow(shown)]
         missed = [event["text"] for event in self.summary["events"] if not event["happened"]]
         found = [*missed, *found]
         known = [*self._at_start, *self._lasting.values(), *found, *of_models(self.summary)]
