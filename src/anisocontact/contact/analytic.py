@@ -18,6 +18,7 @@ from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master, Resting
 from anisocontact.contact.quadrature import Couplings, Surfaced
 from anisocontact.contact.side_of_master import Seen, SideOfMaster
+from anisocontact.contact.supported_share import add_direction
 from anisocontact.interface import Interface, SlaveSurface, State
 from anisocontact.interface.failed_point import OnSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -150,11 +151,8 @@ class AnalyticMaster(Master):
         for points, direction in self._resting:
             if self.body is None or self.body.rests_along(direction):
                 along = self.into_frame(direction)
-                which = points & (np.abs(normal @ along) < ROUNDED)
-                rest = along - out[which] @ along
-                size = np.linalg.norm(rest, axis=1)
-                unit = rest[size > ROUNDED] / size[size > ROUNDED, None]
-                out[np.flatnonzero(which)[size > ROUNDED]] += unit[:, :, None] * unit[:, None]
+                which = np.flatnonzero(points & (np.abs(normal @ along) < ROUNDED))
+                add_direction(out, which, along, ROUNDED)
         return out
 
     @override

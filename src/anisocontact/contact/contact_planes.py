@@ -29,6 +29,7 @@ from anisocontact.contact.plane_axes import (
     in_tangents,
     unit_normal,
 )
+from anisocontact.contact.supported_share import add_direction
 
 #: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
 #: and that of the accepted increment.
@@ -320,11 +321,7 @@ def held_directions(
         held = there[np.maximum(below, 0)] & (below >= 0)
         across = np.abs(normal @ direction) < ACROSS
         which = np.flatnonzero(there[nodes] & held.any(axis=1) & across)
-        rest = direction - out[which] @ direction
-        size = np.linalg.norm(rest, axis=1)
-        new = size > ACROSS
-        unit = rest[new] / size[new][:, None]
-        out[which[new]] += unit[:, :, None] * unit[:, None]
+        add_direction(out, which, direction, ACROSS)
     return out
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.base.array_types import Codes, Flags, Floats
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints
 from anisocontact.base.statuses import SLIP, STICK
 
 
@@ -42,6 +42,22 @@ def supported_share(
     size = np.linalg.norm(along, axis=1)
     less = along * np.divide(most, size, out=np.ones_like(size), where=size > most)[:, None]
     return np.asarray(traction - along + np.where(kept[:, None], before, less))
+
+
+def add_direction(held: Floats, points: Ints, direction: Floats, least: float) -> None:
+    """Let projections of some points contain another direction.
+
+    Args:
+        held: Projections on the directions so far, (n, 3, 3), changed.
+        points: Numbers of the points.
+        direction: Unit vector, (3,).
+        least: Size of what is beside the directions so far that counts as none.
+    """
+    rest = direction - held[points] @ direction
+    size = np.linalg.norm(rest, axis=1)
+    new = size > least
+    unit = rest[new] / size[new][:, None]
+    held[points[new]] += unit[:, :, None] * unit[:, None]
 
 
 def kept_along(resting: Floats, traction: Floats, last: Floats) -> Floats:
