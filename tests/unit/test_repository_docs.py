@@ -46,6 +46,21 @@ def test_every_page_is_in_a_toctree() -> None:
     assert known - reached == set()
 
 
+TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
+RULE_OF_TABLE = re.compile(r"\|(?: *:?-+:? *\|)+")
+
+
+def test_every_table_has_a_heading() -> None:
+    """Rows behind an empty line are no table: they would be shown as text with bars."""
+    found = []
+    for page in sorted(pages()):
+        for table in TABLE.finditer((DOCS / f"{page}.md").read_text()):
+            rows = table[0].splitlines()
+            if len(rows) < 2 or not RULE_OF_TABLE.fullmatch(rows[1]):
+                found.append(f"{page}: {rows[0]}")
+    assert found == []
+
+
 WRITTEN = [ROOT / "README.md", *sorted(DOCS.glob("tutorials/*.md"))]
 TUTORIALS = [page for page in WRITTEN if PYTHON_BLOCK.search(page.read_text())]
 
