@@ -10,6 +10,7 @@ import pytest
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
+from anisocontact.contact.narrow import is_narrow
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, Model, PlaneStrain, build_mesh, make_shape
@@ -187,3 +188,31 @@ def test_what_supports_hold_on_both_sides_is_that_of_the_whole() -> None:
         pressures.append([contact.last.pressure.max(), contact.last.pressure.min()])
     assert counts == [72, 72]
     assert pressures[1] == pytest.approx(pressures[0], rel=1e-8)
+
+
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+@pytest.mark.parametrize("parts", [1, 6])
+def test_a_contact_that_is_closed_all_around_is_not_narrow(plane: bool, parts: int) -> None:
+    """A ring of six facets, all of whose nodes are pressed, and one of its sectors with one facet.
+
+    Requirement: nothing is told of a contact narrower than two facets, of the sector as of the
+    whole: nodes around a node at the cut are in two other sectors. In space a run with its results
+    ended there with an error of the program itself.
+    """
+    turn = {} if parts == 1 else {"start": 0.1, "end": 0.1 + 2.0 * math.pi / parts}
+    name, length = ("annulus", {}) if plane else ("ring", {"length": 0.4})
+    cells = (1, 6 // parts) if plane else (1, 6 // parts, 1)
+    bodies = [
+        Body(body, make_shape(name, inner=inner, outer=outer, cells=cells, **length, **turn))
+        for body, inner, outer in (("hub", 0.7, 1.0), ("tyre", 1.0, 1.3))
+    ]
+    model = build_mesh(bodies, **({"idealisation": PlaneStrain()} if plane else {}))
+    contact = Contact(model, "tyre.inner", "hub.outer", Friction(coefficients=0.1))
+    rubber = make_material("linear-elastic", E=1000.0, nu=0.3)
+    problem = Problem(model, {"hub": rubber, "tyre": rubber}, [contact], cyclic=cut(parts))
+    fixed = {"hub.inner": {"x": 0.0, "y": 0.0} | ({} if plane else {"z": 0.0})}
+    across = {} if plane else {"axial": 0.0}
+    inward = {"tyre.outer": Cylindrical({"radial": -0.02, "tangential": 0.0, **across})}
+    (_,) = Solver(problem, [Step("press", 1, fixed, cylindrical=inward)]).run()
+    assert contact.last.pressure.min() > 0.0
+    assert is_narrow(contact) is False

@@ -44,10 +44,10 @@ def is_narrow(contact: Contact) -> bool | None:
     if not isinstance(points, SlaveNodes) or (flat and space.mesh.comm.size > 1):
         return None
     nodal = np.zeros(node_count(space))
-    around = points.around.nodes % len(nodal) if flat else points.around.nodes  # rows beside it
     pressed = contact.last.pressure > 0.0
-    nodal[around[pressed, 0]] = 1.0
-    nodal = points.everywhere(with_ghosts(space, nodal))
+    nodal[points.nodes[pressed, 0]] = 1.0
+    nodal = points.led(points.everywhere(with_ghosts(space, nodal)))
+    around = points.around.nodes % len(nodal)  # images, beside a plane or in other sectors
     inside = pressed & (nodal[around] > 0.0).all(axis=1)
     counts = space.mesh.comm.allreduce(np.array([pressed.sum(), inside.sum()]))
     return None if not counts[0] else not counts[1]

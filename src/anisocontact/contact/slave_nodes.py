@@ -12,6 +12,7 @@ from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.base.peaks import PEAK
+from anisocontact.contact.beyond_cuts import Led
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetShapes,
@@ -298,6 +299,7 @@ class SlaveNodes(IntegrationPoints):
     ) -> None:
         self.around, quadrature, size = nodes
         self.far, self.keys, self._others = whole.far, whole.keys, whole.others
+        self._following = whole.beside
         self._whole = whole.mesh
         flip = np.zeros(len(quadrature.nodes), dtype=bool)
         super().__init__(quadrature, flip, current_area=current_area, comm=comm)
@@ -316,6 +318,14 @@ class SlaveNodes(IntegrationPoints):
     @override
     def everywhere(self, nodal: Floats) -> Floats:
         return self.far.everywhere(nodal)
+
+    def led(self, nodal: Floats) -> Floats:
+        """Values of nodes, with those that follow others on cut faces as of these."""
+        if not isinstance(self._others, Led):
+            return nodal
+        found = nodal.copy()
+        found[self._following] = nodal[self._others.leading]
+        return found
 
     @override
     def coupled(self, nodes: Locals) -> Locals:
