@@ -12,7 +12,15 @@ from anisocontact.bulk import LinearElastic
 from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, BoxSpec, Model, build_box, make_shape
+from anisocontact.mesh import (
+    Body,
+    BoxSpec,
+    Model,
+    Placement,
+    Rotation,
+    build_box,
+    make_shape,
+)
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.connected_components import unjoined_bodies
 from anisocontact.mesh.described import SAME
@@ -142,3 +150,26 @@ def test_bodies_that_follow_one_rigid_body_are_loose_as_one() -> None:
     free = {"head": {"z": None, "x": None}}
     problem.begin(Step("press", 1, motion=free, load={"head": {"z": -1.0}}))
     assert [free.body.name for free in problem.stabilisation.loose] == ["left + right"]
+
+
+@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_body_that_is_there_twice_is_told(cell: str, order: int) -> None:
+    """Two drums of one body, the second in the first, a little beside it and up by half.
+
+    Requirement: cells that are there twice are counted, also where both are round, and pieces that
+    only touch are none. Force and stiffness were twice the right ones, with nothing told. Each drum
+    has half of its cells in the other; middles of the next layer are outside by a quarter of it.
+    """
+    drum = make_shape("cylinder", radius=1.0, length=4.0, cells=(8, 2, 4), cell=cell, order=order)
+
+    def told(up: float) -> list[str]:
+        place = Placement(rotate=Rotation((0, 0, 1), 0.1), move=(0.01, 0.0, up))
+        both = merge([Body("a", drum).arrays(), Body("b", drum, place).arrays()])
+        body = {"block": np.arange(len(both.cells))}
+        return unjoined_bodies(Model.from_arrays(replace(both, bodies=body, facets={})))
+
+    (line,) = told(2.0)
+    count = len(Body("a", drum).arrays().cells)
+    assert line.startswith(f"body 'block': {count} of {2 * count} cells have their middle in anot")
+    assert told(4.0 + 1e-3) == []

@@ -8,7 +8,7 @@ is called of it stands here.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -62,6 +62,7 @@ __all__ = [
     "assemble_force",
     "assemble_into",
     "basix",
+    "boxes_around",
     "cell_nodes",
     "cell_permutation",
     "corner_weights",
@@ -211,6 +212,30 @@ def closest_cells(mesh: Any, points: Floats) -> tuple[Locals, Floats]:
     middles = dolfinx.geometry.create_midpoint_tree(mesh, dim, cells)
     found = dolfinx.geometry.compute_closest_entity(tree, middles, mesh, points)
     return found, np.sqrt(dolfinx.geometry.squared_distance(mesh, dim, found, points))
+
+
+def boxes_around(mesh: Any) -> Callable[[Floats], tuple[Ints, Ints]]:
+    """A search for the cells this rank owns that have points in the boxes around their nodes.
+
+    Args:
+        mesh: DOLFINx mesh.
+
+    Returns:
+        A function of points, (n, 3), length, whose value are numbers of points and of cells, a pair
+        of them for each such cell.
+    """
+    dim = mesh.topology.dim
+    cells = np.arange(mesh.topology.index_map(dim).size_local, dtype=np.int32)
+    tree = dolfinx.geometry.bb_tree(mesh, dim, entities=cells) if len(cells) else None
+
+    def search(points: Floats) -> tuple[Ints, Ints]:
+        if tree is None:
+            return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+        found = dolfinx.geometry.compute_collisions_points(tree, points)
+        of_point = np.repeat(np.arange(len(points)), np.diff(found.offsets))
+        return of_point, np.asarray(found.array, dtype=np.int64)
+
+    return search
 
 
 def reference_place(mesh: Any, cell: int, point: Floats) -> Floats:

@@ -12,6 +12,7 @@ from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.mesh.described import SAME
 from anisocontact.mesh.model import Model
+from anisocontact.mesh.overlapping_cells import overlapping_cells
 
 
 def component_of_nodes(space: Any) -> Ints:
@@ -38,13 +39,17 @@ def component_of_nodes(space: Any) -> Ints:
 
 
 def unjoined_bodies(model: Model, apart: Sequence[Locals] = ()) -> list[str]:
-    """Bodies of pieces that lie on each other and share no nodes, a line each; collective.
+    """Bodies of pieces that lie on or in each other and share no nodes; collective.
 
-    A mesh of parts that were not merged looks like one body, and nothing passes between them.
+    A mesh of parts that were not merged looks like one body, and nothing passes between them. One
+    that has parts twice is twice as stiff there.
 
     Args:
         model: The bodies.
         apart: Local nodes that are meant to lie on others, as those in contact.
+
+    Returns:
+        A line for each such body, two where its pieces do both.
     """
     space, comm = model.space, model.mesh.comm
     label, owned = component_of_nodes(space), space.dofmap.index_map.size_local
@@ -58,6 +63,8 @@ def unjoined_bodies(model: Model, apart: Sequence[Locals] = ()) -> list[str]:
         numbers = np.unique(np.concatenate(comm.allgather(np.unique(label[nodes]))))
         if len(numbers) == 1:
             continue
+        if twice := overlapping_cells(model, name):
+            said.append(twice)
         count = _on_others(*(np.concatenate(comm.allgather(part[own])) for part in (x, label)))
         if count:
             said.append(
