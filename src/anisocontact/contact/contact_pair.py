@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.base.arrays import by_place
 from anisocontact.base.arrays import points as points_of
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
@@ -20,11 +19,12 @@ from anisocontact.contact.energies import ContactEnergies
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.initial import check_start
 from anisocontact.contact.integration_points import IntegrationPoints
+from anisocontact.contact.law_failures import LawFailures
 from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.rounded_forces import levers
 from anisocontact.contact.side_of_master import SideOfMaster
-from anisocontact.interface import FAILURE, ContactLaw, Interface, Response
+from anisocontact.interface import ContactLaw, Interface, Response
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 
@@ -231,34 +231,17 @@ class ContactPair:
         try:
             self.answer = self.trials.answer(dt)
         except InputError as error:
-            error.failed = self._unanswered()
+            error.failed = self._failures().unanswered()
             raise
         self._trial = self.answer.snapshot
         return self._trial.response
 
     def failed_point(self) -> FailedPoint | None:
         """The first point of this rank, by its place, at which the laws failed in the trial."""
-        failure = self.current.response.failure
-        if not failure.any():
-            return None
-        failed = np.flatnonzero(failure)
-        point = int(failed[by_place(self.current.points[failed])[0]])
-        return self._at_point(point, FAILURE[failure[point]])
+        return self._failures().first(self.current)
 
-    def _at_point(self, point: int, failure: str) -> FailedPoint:
-        said = {"contact": self.name, "point": point, "failure": failure}
-        found: FailedPoint = self.master.failed_point(point, self.trials.start, self._dt, **said)
-        return found
-
-    def _unanswered(self) -> FailedPoint | None:
-        """The first point of this rank at which a law in Python fails when it is asked alone."""
-        for i in range(len(self.trials.start)):
-            point = self._at_point(i, "")
-            try:
-                point.evaluate()
-            except InputError as error:
-                return replace(point, failure=str(error))
-        return None
+    def _failures(self) -> LawFailures:
+        return LawFailures(self.name, self.master, self.trials.start, self._dt)
 
     def body_blocks(self) -> BodyBlocks:
         """Rows and columns of the rigid body that carries the master in the tangent of the trial.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 from typing import Any, override
 
 import numpy as np
@@ -208,22 +207,21 @@ class FacetMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint = self._accepted[1]
-        kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
-        for facets in (kept["state"]["facet"], kept["projection.facet"]):
-            facets[:] = self._gathered.globally(facets)
-        return kept | {"reference": self.sides.points.positions(self.sides.reference)}
+        kept["state"]["facet"] = self._gathered.globally(kept["state"]["facet"])
+        return (
+            kept
+            | self._kept_hint()
+            | {"reference": self.sides.points.positions(self.sides.reference)}
+        )
 
     @override
     def restore(
         self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
     ) -> Mapping[str, npt.NDArray[Any]]:
         kept = {name: values.copy() for name, values in kept.items()}
-        named = kept["state"]["facet"], kept["projection.facet"]
+        self._hint = self._hint_of(kept)
         u = self._gathered.moved(u)
-        self._number_anew(u, named)
-        names = [f.name for f in fields(FacetProjections)]
-        self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
+        self._number_anew(u, (kept["state"]["facet"], self._hint.facet))
         self._go_to(self.sides.reference + self._gathered.everywhere(u))
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         return kept

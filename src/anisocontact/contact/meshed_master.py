@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import override
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, override
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.history import Snapshot
@@ -172,6 +175,18 @@ class MeshedMaster(Master):
             numbers = np.unique(np.concatenate([one.reshape(-1) for one in facets]))
             now = self._gathered.local(self.sides.reference) + u
             self.sides = self.sides.gather(now, numbers[numbers >= 0].astype(np.int64))
+
+    def _kept_hint(self) -> dict[str, npt.NDArray[Any]]:
+        """Closest points of the accepted state for a checkpoint, facets numbered in the group."""
+        hint = self._accepted[1]
+        kept = {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
+        return kept | {"projection.facet": self._gathered.globally(hint.facet)}
+
+    @staticmethod
+    def _hint_of(kept: Mapping[str, npt.NDArray[Any]]) -> FacetProjections:
+        """What `_kept_hint` gave, facets still numbered in the group."""
+        names = [f.name for f in fields(FacetProjections)]
+        return FacetProjections(*(kept[f"projection.{name}"] for name in names))
 
     def _go_to(self, now: Floats) -> None:
         """Bring the surface to positions of the nodes, (nodes, 3), length."""

@@ -42,7 +42,7 @@ from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
+from anisocontact.surfaces.facets import FACET_STATUS
 
 #: Gap up to which a node may be in contact, as a share of the size of the facets: rounding.
 NEAR = 1e-6
@@ -370,9 +370,8 @@ class MortarMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint, then = self._accepted[1], names_of(self._then, self._gathered)
-        kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
-        kept["projection.facet"] = self._gathered.globally(hint.facet)
+        then = names_of(self._then, self._gathered)
+        kept |= self._kept_hint()
         kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)
         # as wide as on the process that has most
         widths = self._comm.allgather((then.masters.shape[1], then.around.shape[1]))
@@ -387,7 +386,7 @@ class MortarMaster(MeshedMaster):
         self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
     ) -> Mapping[str, npt.NDArray[Any]]:
         kept = {name: values.copy() for name, values in kept.items()}
-        self._hint = FacetProjections(*(kept[f"projection.{f.name}"] for f in fields(self._hint)))
+        self._hint = self._hint_of(kept)
         then = replace(self._then, **{name: kept[f"opposite.{name}"] for name in OPPOSITE})
         self._then = self._number_anew(u, [then], [self._hint.facet])[0]
         if self._self_contact is not None:

@@ -131,8 +131,7 @@ class PrescribedPath(Load):
 
     def place(self, surface: Surface, t: float) -> Floats:
         """Position of the path at time t, (3,)."""
-        p = self.path(t)
-        return p if p.size == 3 else surface.position(p[None])[0]
+        return _in_space(surface, self.path(t))
 
     def start(self, surface: Surface) -> Floats:
         """First position of the path."""
@@ -192,8 +191,7 @@ class DraggingSpring(Load):
 
     def end(self, surface: Surface, t: float) -> Floats:
         """Free end at time t, (3,)."""
-        p = self.path(t)
-        return p if p.size == 3 else surface.position(p[None])[0]
+        return _in_space(surface, self.path(t))
 
     def start(self, surface: Surface) -> Floats:
         """Where the reference begins."""

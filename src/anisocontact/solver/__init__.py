@@ -21,7 +21,7 @@ from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.cylindrical import Cylindrical
-from anisocontact.solver.terms.faces import CoupledFace
+from anisocontact.solver.terms.face_on_body import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
 from anisocontact.solver.terms.turn import Turn

@@ -24,7 +24,8 @@ from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
-from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
+from anisocontact.solver.terms.face_on_body import CoupledFace
+from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads

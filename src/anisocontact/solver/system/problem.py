@@ -34,7 +34,7 @@ from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
-from anisocontact.solver.terms.faces import CoupledFace
+from anisocontact.solver.terms.face_on_body import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie

@@ -16,6 +16,26 @@ from anisocontact.solver.terms.turn import Turn
 _PLACES = 64
 
 
+def check_known(step: Step, names: list[str]) -> None:
+    """Refuse motions and loads of rigid bodies that are not there.
+
+    Args:
+        step: What prescribes them.
+        names: Of the bodies that are.
+
+    Raises:
+        InputError: Names the body.
+    """
+    given = (("motion", step.motion), ("load", step.load), ("rotation", step.turned_bodies()))
+    for what, bodies in given:
+        for name in bodies:
+            if name not in names:
+                raise InputError(
+                    f"no contact has a rigid body {name!r}, allowed: {', '.join(names) or 'none'}",
+                    f"step {step.name!r}.{what}",
+                )
+
+
 class Drive:
     """Motion and loads of one rigid body along the steps; at first all components are held.
 

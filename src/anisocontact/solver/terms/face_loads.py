@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.solver.terms.faces import FaceOnBody
+from anisocontact.solver.terms.face_on_body import FaceOnBody
 
 #: Share of the largest resistance of the nodes below which they do not take a force or moment.
 NOT_TAKEN = 1e-10

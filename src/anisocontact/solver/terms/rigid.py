@@ -12,9 +12,10 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.rigid import RigidBody
-from anisocontact.solver.terms.drive import Drive
+from anisocontact.solver.terms.drive import Drive, check_known
 from anisocontact.solver.terms.face_loads import add_face_loads
-from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
+from anisocontact.solver.terms.face_on_body import FaceOnBody
+from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
@@ -58,9 +59,9 @@ class RigidBodies(Term):
                 ]
             )
         )
-        names = [body.name for body in self.bodies]
-        for name in names:
-            if names.count(name) > 1:
+        self._names = [body.name for body in self.bodies]
+        for name in self._names:
+            if self._names.count(name) > 1:
                 raise InputError(f"two rigid bodies have the name {name!r}", "body")
         self.free = [body for body in self.bodies if body.free]
         self.contacts = {b: [one for one in on_bodies if one.body is b] for b in self.bodies}
@@ -98,14 +99,14 @@ class RigidBodies(Term):
         """
         drives = {body: Drive(body) for body in self.bodies}
         for step in steps:
-            self._known(step)
+            check_known(step, self._names)
             for drive in drives.values():
                 drive.begin(step, drive.values(1.0), np.zeros(6))
             yield self._frames(drives)
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        self._known(step)
+        check_known(step, self._names)
         reactions = self._accepted_outside + self._accepted_of_faces - self._accepted_load
         for body, reaction in zip(self.bodies, reactions, strict=True):
             drive = self._drives[body]
@@ -370,18 +371,6 @@ class RigidBodies(Term):
                 local[i] += contact.current.wrench(body.position)
         springs = [body.springs * body.trial.values for body in self.bodies]
         return np.asarray(self._comm.allreduce(local) + np.reshape(springs, local.shape))
-
-    def _known(self, step: Step) -> None:
-        names = [body.name for body in self.bodies]
-        given = (("motion", step.motion), ("load", step.load), ("rotation", step.turned_bodies()))
-        for what, bodies in given:
-            for name in bodies:
-                if name not in names:
-                    raise InputError(
-                        f"no contact has a rigid body {name!r}, "
-                        f"allowed: {', '.join(names) or 'none'}",
-                        f"step {step.name!r}.{what}",
-                    )
 
     def _scale(self, body: RigidBody) -> Floats:
         """1 for translations, the distance to the farthest slave point for turns, (6,)."""
