@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
@@ -16,7 +17,8 @@ from anisocontact.mesh import Body, Placement, PlaneStrain, Rotation, build_mesh
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Cylindrical, Problem, Solver, Step
 from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
-from anisocontact.solver.stepping.report import Accepted
+from anisocontact.solver.stepping.level_nodes import level_nodes
+from anisocontact.solver.stepping.report import Accepted, StoppedError
 from anisocontact.surfaces import make_surface
 
 WALL = {"low.left": {"x": 0.0, "y": 0.0}, "up.left": {"x": 0.0, "y": 0.0}}
@@ -149,6 +151,34 @@ def test_an_edge_level_with_its_reference_point_is_held_while_the_body_is_free_t
     assert not tilted.relaxed
     assert tilted.iterations <= held.iterations + 3
     assert contact.last.pressure.max() < 100.0
+
+
+@pytest.mark.slow
+def test_an_edge_that_a_large_turn_alone_takes_off_is_told_where_a_run_stops() -> None:
+    """At finite strain a turn moves the edge off the plane by its square, and begins at once.
+
+    Requirement: a run that finds no equilibrium there names the contact, the face and its body, and
+    what to do. Source: the edge is level with the reference point along the plane, so that a way
+    into it of 0.005 needs a turn of 8 degrees. A load on the body in the place of that way is no
+    such case, whatever else is in the way.
+    """
+    block = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(2, 2))
+    model = build_mesh([Body("block", block)], idealisation=PlaneStrain())
+    steel = {"block": make_material("neo-hookean", E=1e3, nu=0.3)}
+    wall = make_surface("plane", point=[0, 0, 0], normal=[1, 0, 0])
+    contact = Contact(model, "block.left", wall, Friction(coefficients=0.2))
+    face = CoupledFace("block.top", RigidBody("head", (0.5, 1.0, 0.0), free=True))
+    problem = Problem(model, steel, [contact], coupled=[face])
+    motion = {"head": {"x": -0.005, "y": -0.01, "rz": None}}
+    step = Step("press", 1, {"block.bottom": {"y": 0.0}}, motion=motion)
+    with pytest.raises(StoppedError) as stopped:
+        list(Solver(problem, [step], limits=Limits(smallest=1.0)).run())
+    told = "1 slave point of 'block.top' can leave the master by nothing but a large turn of rigid"
+    assert told in str(stopped.value)
+    assert "'head'" in str(stopped.value)
+    freed = {"head": {"x": None, "y": -0.01, "rz": None}}
+    problem.begin(Step("press", 1, {"block.bottom": {"y": 0.0}}, motion=freed))
+    assert level_nodes(problem) == ""
 
 
 def _leaning(degrees: float, guided: bool) -> tuple[Accepted, Floats]:

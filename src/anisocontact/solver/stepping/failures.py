@@ -10,6 +10,7 @@ from anisocontact.bulk.material_warnings import STRESSED
 from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
+from anisocontact.solver.stepping.level_nodes import level_nodes
 from anisocontact.solver.stepping.overload import (
     Overload,
     exhausted,
@@ -65,7 +66,8 @@ class Failures:
         inverted = any(c.kind == "inverted" for c in outcome.culprits)
         causes = [line for line in self._doubtful if inverted and STRESSED in line]
         slopes = wrong_derivatives(self._problem.contacts)
-        text = "; ".join(part for part in (text, slopes, outcome.hint, *causes) if part)
+        parts = (text, slopes, outcome.hint, level_nodes(self._problem), *causes)
+        text = "; ".join(part for part in parts if part)
         increment = place.control.increment
         stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
         stop.failed = outcome.failed
