@@ -218,8 +218,8 @@ nb::ndarray<nb::numpy, double> normals(const Table& nodes, const Flags& flip,
 /// Pairs of facets that face each other, in ascending order, and the distances of their middles.
 nb::tuple facing(const FacetSurface& s, const Points& middle, const Scalars& radius,
                  const Points& normal, const Points& centre, const Scalars& size,
-                 const Points& other, double distance, const Offsets& offsets, const Indices& unmet,
-                 std::size_t threads) {
+                 const Points& other, double distance, double farther, const Offsets& offsets,
+                 const Indices& unmet, std::size_t threads) {
   const std::size_t n = middle.shape(0);
   const search::FacetBalls own{middle.data(), radius.data(), normal.data()},
       theirs{centre.data(), size.data(), other.data()};
@@ -232,7 +232,7 @@ nb::tuple facing(const FacetSurface& s, const Points& middle, const Scalars& rad
         std::span<const std::int32_t> left_out;
         if (offsets.shape(0) > 0)
           left_out = {unmet.data() + offsets.data()[f], unmet.data() + offsets.data()[f + 1]};
-        search::faced(s, own, f, theirs, distance, left_out, found);
+        search::faced(s, own, f, theirs, {distance, farther}, left_out, found);
         lists[f] = found;
       }
     });
@@ -339,7 +339,7 @@ void bind_search(nb::module_& m) {
       .def("within", &within, nb::arg("x"), nb::arg("distance"), nb::arg("threads"))
       .def("facing", &facing, nb::arg("middle"), nb::arg("radius"), nb::arg("normal"),
            nb::arg("centre"), nb::arg("size"), nb::arg("other"), nb::arg("distance"),
-           nb::arg("offsets"), nb::arg("unmet"), nb::arg("threads"))
+           nb::arg("farther"), nb::arg("offsets"), nb::arg("unmet"), nb::arg("threads"))
       .def("rings", &rings, nb::arg("facet"), nb::arg("count"))
       .def("sides", &sides);
   m.def("facet_balls", &balls, nb::arg("nodes"), nb::arg("x"));

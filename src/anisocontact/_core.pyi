@@ -213,6 +213,7 @@ class FacetSurface:
         size: NDArray[numpy.float64],
         other: NDArray[numpy.float64],
         distance: float,
+        farther: float,
         offsets: NDArray[numpy.int64],
         unmet: NDArray[numpy.int32],
         threads: int,

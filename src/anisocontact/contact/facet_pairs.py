@@ -23,6 +23,8 @@ BEHIND = 0.02
 OPPOSED = 0.1
 #: The same of its neighbour at the tip of a closed crack.
 CLOSED = 0.9
+#: Distance up to which facets are met that go on from those within reach, over the reach.
+FARTHER = 2.0
 
 
 class FacingSides(Protocol):
@@ -83,7 +85,13 @@ def largest_radius(slave: FacetMesh, now: Floats) -> float:
 
 
 def facing_pairs(
-    sides: FacingSides, slave: FacetMesh, now: Floats, radius: float, across: Flags | None = None
+    sides: FacingSides,
+    slave: FacetMesh,
+    now: Floats,
+    radius: float,
+    across: Flags | None = None,
+    *,
+    farther: bool = False,
 ) -> FacetPairs:
     """Pairs of facets within reach that oppose each other and may overlap along the normal.
 
@@ -94,6 +102,8 @@ def facing_pairs(
         radius: As of `largest_radius`, over all processes.
         across: Facets of the slave that meet what faces them within 60 degrees alone, (m,), see
             `beside_edges`.
+        farther: Whether what goes on in front of a facet from those within reach is met up to twice
+            the reach: what rises steeply there would come and go.
     """
     master, near = sides.master, sides.near
     middle, radii = _ball(slave.nodes, now)
@@ -109,6 +119,7 @@ def facing_pairs(
         size,
         other,
         sides.reach + radius,
+        (FARTHER if farther else 1.0) * sides.reach + radius,
         unmet.offsets,
         unmet.facets,
         sides.threads,

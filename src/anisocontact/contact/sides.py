@@ -22,7 +22,7 @@ from anisocontact.contact.facet_mesh import (
     facet_rule,
     isoparametric,
 )
-from anisocontact.contact.facet_pairs import largest_radius, near_facets
+from anisocontact.contact.facet_pairs import FARTHER, largest_radius, near_facets
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master_surface import MasterSurface
@@ -182,8 +182,8 @@ class Sides:
     def may_leave_gathered(self, now: Floats) -> bool:
         """Whether points may reach facets that this rank has not gathered; the same on all ranks.
 
-        Facets are gathered as far as twice the reach. A slave facet that moves comes nearer, its
-        middle with it, and it may grow by twice the way.
+        Facets are gathered by the reach farther than they are met. A slave facet that moves comes
+        nearer, its middle with it, and it may grow by twice the way.
 
         Args:
             now: Positions of the local nodes, (nodes, 3), length.
@@ -216,7 +216,7 @@ class Sides:
             now: Positions of the local nodes, (nodes, 3), length.
             more: Facets to have as well, numbers in the whole group.
         """
-        _collect(self.gathered, self.slave, self.points, now, 2.0 * self.reach, more)
+        _collect(self.gathered, self.slave, self.points, now, (1.0 + FARTHER) * self.reach, more)
         near = None if self.apart is None else self.apart.by(partial(_there, self.gathered))
         return replace(
             self,
@@ -295,7 +295,8 @@ def make_sides(
         isoparametric(own, rule, reference), own.flip, current_area=current, comm=comm
     )
     reach = options.reach if options.reach is not None else 2.0 * points.size
-    _collect(gathered, own, points, reference, max(reach, options.apart or 0.0) + reach, NONE)
+    far = max(FARTHER * reach, options.apart or 0.0) + reach
+    _collect(gathered, own, points, reference, far, NONE)
     surface = _surface(gathered, reference)
     near = None
     if options.apart is not None:

@@ -267,3 +267,36 @@ def test_threads_give_the_same(meshes: SimpleNamespace) -> None:
     one, two = (surface.project(x, threads=k) for k in (1, 2))
     for name in ("facet", "xi", "gap", "normal", "status", "feature"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
+
+
+def test_what_goes_on_in_front_is_met_farther() -> None:
+    """Facets that oppose another one, which hang together and reach beyond the distance.
+
+    Requirement: within the distance all that oppose; up to the farther one what goes on from these
+    by nodes in front of the facet, and nothing else: no wall that stands alone there, and none
+    behind. Source: `Limits`. Facets and distances are exact.
+    """
+    # a stair of four facets that rises from where the other one is, and one that stands alone
+    row = [
+        [[h, 0, h], [h, 1, h], [h + 0.5, 0, h + 0.5], [h + 0.5, 1, h + 0.5]]
+        for h in (0.0, 0.5, 1.0, 1.5)
+    ]
+    alone = [[0, 0, 1.3], [0, 1, 1.3], [1, 0, 1.3], [1, 1, 1.3]]
+    points = np.array([x for facet in [*row, alone] for x in facet], dtype=float)
+    nodes, numbers = np.unique(points, axis=0, return_inverse=True)
+    facets = numbers.reshape(-1, 4).astype(np.int32)
+    surface = FacetSurface(nodes, facets, "quad4")
+    middle, radius = np.array([[0.3, 0.5, 0.0]]), np.array([2.0])
+    up, down = np.array([[0.0, 0.0, 1.0]]), np.tile([0.0, 0.0, -1.0], (len(facets), 1))
+    none = np.zeros(0, np.int64), np.zeros(0, np.int32)
+    balls = nodes[facets].mean(axis=1), np.full(len(facets), 2.0)
+
+    def found(farther: float, normal: np.ndarray = up) -> list[int]:
+        args = middle, radius, normal, *balls, np.sign(normal[0, 2]) * down
+        pairs = surface.core.facing(*args, 0.9, farther, *none, 1)
+        return pairs[1].tolist()
+
+    assert found(0.9) == [0, 1]
+    assert found(1.5) == [0, 1, 2]
+    assert found(3.0) == [0, 1, 2, 3]
+    assert found(3.0, -up) == [0, 1]

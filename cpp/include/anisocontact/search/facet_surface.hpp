@@ -124,11 +124,16 @@ class FacetSurface {
   void within(const Vec3<double>& x, double distance, const Wanted& wanted,
               std::vector<std::int32_t>& found) const {
     found.clear();
-    const double bound2 = std::nextafter(distance * distance, 2.0 * distance * distance);
-    tree_.descend(x, bound2, [&](std::int32_t f, double) {
-      if (wanted(f) && is_within(f, x, bound2)) found.push_back(f);
+    const double bound = squared_bound(distance);
+    tree_.descend(x, bound, [&](std::int32_t f, double) {
+      if (wanted(f) && is_nearer(f, x, bound)) found.push_back(f);
     });
     std::sort(found.begin(), found.end());
+  }
+
+  /// Whether a facet is within a distance of x.
+  bool is_within(std::int32_t f, const Vec3<double>& x, double distance) const {
+    return is_nearer(f, x, squared_bound(distance));
   }
 
  private:
@@ -137,8 +142,13 @@ class FacetSurface {
     projection::FacetPoint point{};
   };
 
+  /// The bound below which squares of distances are up to one.
+  static double squared_bound(double distance) {
+    return std::nextafter(distance * distance, 2.0 * distance * distance);
+  }
+
   /// Whether a facet is nearer than a bound, the square of a distance; a node of it may be as well.
-  bool is_within(std::int32_t f, const Vec3<double>& x, double bound2) const {
+  bool is_nearer(std::int32_t f, const Vec3<double>& x, double bound2) const {
     const FacetNodes p = nodes(f);
     for (std::size_t a = 0; a < surface::node_count(kind(f).topology); ++a)
       if ((p[a] - x).squaredNorm() < bound2) return true;

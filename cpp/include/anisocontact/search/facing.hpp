@@ -23,11 +23,51 @@ struct FacetBalls {
 /// says whether it faces another one, and it covers nothing.
 inline constexpr double edge_on = 1e-3;
 
-/// Facets of a surface, whose balls are `theirs`, that are within a distance of the middle of facet f,
+/// Distances from the middle of a facet up to which others are found, and up to which what goes on from
+/// these in front of it is: where a surface rises steeply in front of a facet on which it lies, a part of
+/// it that came and went at a distance would let what the facet meets jump.
+struct Limits {
+  double distance, farther;
+};
+
+/// Keeps those of the facets found for facet f that are within the distance, and those in front of it that
+/// hang together with them by nodes.
+inline void keep_connected(const FacetSurface& surface, const Vec3<double>& middle,
+                           const Vec3<double>& normal, const FacetBalls& theirs, double distance,
+                           std::vector<std::int32_t>& found) {
+  const auto far = std::stable_partition(found.begin(), found.end(), [&](std::int32_t g) {
+    return surface.is_within(g, middle, distance);
+  });
+  if (far == found.end()) return;
+  std::vector<std::int32_t> met;
+  const auto meet = [&](std::int32_t g) {
+    const auto nodes = surface.mesh().nodes(static_cast<std::size_t>(g));
+    met.insert(met.end(), nodes.begin(), nodes.end());
+  };
+  std::for_each(found.begin(), far, meet);
+  const auto joins = [&](std::int32_t g) {
+    const auto nodes = surface.mesh().nodes(static_cast<std::size_t>(g));
+    return std::find_first_of(nodes.begin(), nodes.end(), met.begin(), met.end()) != nodes.end();
+  };
+  const auto in_front = [&](std::int32_t g) {
+    return normal.dot(FacetBalls::row(theirs.middle, static_cast<std::size_t>(g)) - middle) > 0.0;
+  };
+  const auto last = std::partition(far, found.end(), in_front);
+  auto kept = far;
+  for (auto next = std::partition(kept, last, joins); next != kept;
+       next = std::partition(kept, last, joins)) {
+    std::for_each(kept, next, meet);
+    kept = next;
+  }
+  found.erase(kept, found.end());
+  std::sort(found.begin(), found.end());
+}
+
+/// Facets of a surface, whose balls are `theirs`, that are within limits of the middle of facet f,
 /// lie beside each other by no more than both radii, oppose it and are not left out (in ascending order).
 inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_t f,
-                  const FacetBalls& theirs, double distance, std::span<const std::int32_t> left_out,
-                  std::vector<std::int32_t>& found) {
+                  const FacetBalls& theirs, const Limits& limits,
+                  std::span<const std::int32_t> left_out, std::vector<std::int32_t>& found) {
   const Vec3<double> middle = FacetBalls::row(own.middle, f),
                      normal = FacetBalls::row(own.normal, f);
   const auto wanted = [&](std::int32_t facet) {
@@ -38,7 +78,9 @@ inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_
     return apart.squaredNorm() - along * along <= both * both &&
            !std::binary_search(left_out.begin(), left_out.end(), facet);
   };
-  surface.within(middle, distance, wanted, found);
+  surface.within(middle, std::max(limits.distance, limits.farther), wanted, found);
+  if (limits.farther > limits.distance)
+    keep_connected(surface, middle, normal, theirs, limits.distance, found);
 }
 
 }  // namespace anisocontact::search
