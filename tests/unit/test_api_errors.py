@@ -96,6 +96,10 @@ WRONG = {
         lambda m: INTERFACE.update(START, [[0, 0, 0], [1, 0, 0]]),
         r"x: an array of shape \(2, 3\) given, \(1, 3\) needed",
     ),
+    "a word for the point of a moment": (
+        lambda m: Contact(m, "block.bottom", PLANE, LAWS[2]).resultant("middle"),
+        "about: 'middle' given, an array of real numbers needed",
+    ),
     "numbers for states": (
         lambda m: INTERFACE.update(np.zeros((1, 4)), [[0, 0, 0]]),
         "state: no states given",

@@ -110,6 +110,7 @@ def test_a_script_is_told_of_bodies_that_overlap(depth, adjust):
     found = [str(one.message) for one in heard if one.category is ModelWarning]
     said = "contact of pad.bottom: the bodies overlap by 0.02 at the start, 4% of the facet size"
     assert [line.startswith(said) for line in found] == [True] * bool(depth and adjust is None)
+    assert {one.filename for one in heard if one.category is ModelWarning} <= {__file__}
 
 
 @pytest.mark.parametrize(

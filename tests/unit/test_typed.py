@@ -152,10 +152,40 @@ def test_a_value_by_name_that_does_not_fit_is_named() -> None:
     assert str(caught.value) == "table.wrong: 'b' given, a list of texts needed"
 
 
+@pytest.mark.parametrize(
+    ("called", "given", "says"),
+    [
+        (
+            _takes,
+            "tabel",
+            "_takes() got an unexpected keyword argument 'tabel': did you mean 'table'?",
+        ),
+        (
+            anisocontact.Body,
+            "order",
+            "Body() got an unexpected keyword argument 'order': allowed: name, shape, placement",
+        ),
+        (
+            anisocontact.Step,
+            "displacements",
+            "Step() got an unexpected keyword argument 'displacements': "
+            "did you mean 'displacement'?",
+        ),
+    ],
+)
+def test_an_argument_that_there_is_not_is_told_beside_those_that_are(
+    called: Callable[..., Any], given: str, says: str
+) -> None:
+    """Requirement: Python's own error, with the argument that is spelt like it, or with all."""
+    with pytest.raises(TypeError) as caught:
+        called(**{given: 1})
+    assert str(caught.value) == says
+
+
 def test_a_call_that_python_refuses_is_for_python() -> None:
-    """An argument that there is not is no matter of types."""
-    with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
-        _takes(colour=1)  # type: ignore[call-arg]
+    """An argument that is given twice is no matter of types."""
+    with pytest.raises(TypeError, match="multiple values for argument 'name'"):
+        anisocontact.Body(3, name="a")  # type: ignore[misc, call-arg, arg-type]
 
 
 class _Half:

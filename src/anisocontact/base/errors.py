@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 __all__ = [
@@ -18,6 +20,9 @@ __all__ = [
     "tell_script",
     "within",
 ]
+
+#: Files of which no warning names a line: what a script has called goes through several of them.
+_PACKAGE = f"{Path(__file__).parents[1]}{os.sep}"
 
 
 def printable(text: str) -> str:
@@ -130,10 +135,11 @@ class RunWarning(ModelWarning):
     """
 
 
-def tell_script(text: str) -> None:
-    """Give a `RunWarning`.
+def tell_script(text: str, category: type[Warning] = RunWarning) -> None:
+    """Give a warning of the line of the script that has called the package.
 
     Args:
         text: The line.
+        category: What it is a warning of.
     """
-    warnings.warn(text, RunWarning, stacklevel=3)
+    warnings.warn(text, category, skip_file_prefixes=(_PACKAGE,))

@@ -12,7 +12,7 @@ import inspect
 import math
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, partial, wraps
 from itertools import chain
 from numbers import Integral, Real
@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.read_only import read_only
+from anisocontact.base.words import hint as hint_at
 
 #: What is said of types that are known by another name, or hold several things.
 _CALLED: Mapping[Any, str] = {
@@ -73,6 +74,22 @@ def is_number(value: object) -> TypeGuard[float]:
     return _is_number(Real, value)
 
 
+def unexpected(called: str, name: str, known: Collection[str]) -> TypeError:
+    """What is said of an argument that there is not: Python's words, and what there is instead.
+
+    Args:
+        called: Name of what was called.
+        name: The argument.
+        known: Those that it has.
+
+    Example:
+        >>> str(unexpected("Step", "durations", ["name", "duration"]))
+        "Step() got an unexpected keyword argument 'durations': did you mean 'duration'?"
+    """
+    said = f"{called}() got an unexpected keyword argument {name!r}"
+    return TypeError(f"{said}: {hint_at(name, known, 'allowed')}")
+
+
 #: Says whether a value is of a type.
 type _Judge = Callable[[Any], bool]
 
@@ -81,6 +98,11 @@ def _checked(function: Any) -> Any:
     @wraps(function)
     def checked(*args: Any, **kwargs: Any) -> Any:
         names, judges = _arguments(function)
+        known = _keywords(function)
+        strange = next((name for name in kwargs if known and name not in known), None)
+        if known and strange:
+            called = function.__qualname__.removesuffix(".__init__").split(".")[-1]
+            raise unexpected(called, strange, known)
         for name, value in chain(zip(names, args, strict=False), kwargs.items()):
             if name in judges and not judges[name](value) and _binds(function, args, kwargs):
                 place, part, hint = _wrong_part(name, value, _hints(function)[name])
@@ -113,6 +135,16 @@ def _binds(function: Any, args: Any, kwargs: Any) -> bool:
 @cache
 def _signature(function: Any) -> inspect.Signature:
     return inspect.signature(function)
+
+
+@cache
+def _keywords(function: Any) -> tuple[str, ...]:
+    """Names of the arguments that may be given by name, without the object; none where any may."""
+    parameters = list(_signature(function).parameters.values())
+    if any(p.kind == p.VAR_KEYWORD for p in parameters):
+        return ()
+    named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    return tuple(p.name for p in parameters if p.kind in named and p.name != "self")
 
 
 @cache

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.base.arrays import points as points_of
 from anisocontact.base.one_history import OneHistory
 from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
@@ -296,8 +297,12 @@ class Contact(ContactPair, OneHistory, Uncopied):
 
         Returns:
             Force (3,) and moment (3,), force and force times length.
+
+        Raises:
+            InputError: The point is not three finite numbers.
         """
-        total = self._comm.allreduce(self.wrench(self.accepted, np.asarray(about)))
+        (place,) = points_of(about, 3, "about", rows=1)
+        total = self._comm.allreduce(self.wrench(self.accepted, place))
         return total[:3], total[3:] * self.model.idealisation.moments
 
     def wrench(self, now: Snapshot, about: Floats) -> Floats:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from anisocontact.base.errors import ModelWarning
+from anisocontact.base.errors import ModelWarning, tell_script
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
@@ -319,4 +318,4 @@ def warn_of_overlaps(contacts: Sequence[Contact]) -> None:
 
 def _warn(lines: Iterable[str]) -> None:
     for line in lines:
-        warnings.warn(line, ModelWarning, stacklevel=4)
+        tell_script(line, ModelWarning)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, TypedDict
 
 import numpy as np
 
 from anisocontact.base.array_types import Locals
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, tell_script
 from anisocontact.base.fenicsx import facet_keys, facet_sides
+from anisocontact.base.typed import unexpected
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.beyond_cuts import BeyondCuts, Seam
 from anisocontact.contact.contact_pair import PairParts
@@ -65,15 +65,18 @@ def before_this(
         TypeError: There are other arguments.
     """
     if unknown := sorted(set(before) - set(DeprecatedArguments.__annotations__)):
-        raise TypeError(f"Contact() got an unexpected keyword argument {unknown[0]!r}")
+        options = (field.name for field in fields(ContactOptions))
+        raise unexpected(
+            "Contact", unknown[0], ("model", "slave", "master", "law", *options, "name")
+        )
     mortar = before.pop("two_half", False) or before.pop("overlaps", False)
     if mortar:
         text = "two_half, overlaps: take mortar=True, which is taken now"
-        warnings.warn(text, DeprecationWarning, stacklevel=3)
+        tell_script(text, DeprecationWarning)
     if not before:
         return master, mortar or None
     text = "interface, body: take master=interface or master=MovingSurface(interface, body)"
-    warnings.warn(text, DeprecationWarning, stacklevel=3)
+    tell_script(text, DeprecationWarning)
     surface: Any = before.get("interface", master)
     return MovingSurface(surface, before.get("body")), mortar
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,7 +12,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.blas_threads import one_thread
-from anisocontact.base.errors import InputError, ModelWarning
+from anisocontact.base.errors import InputError, ModelWarning, tell_script
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
@@ -136,7 +135,7 @@ class ContactProblem(Uncopied):
         with one_thread():
             iterations = self._solve(dt)
         for said in (*self._options.unread(self.comm), *self.system.sides.fresh()):
-            warnings.warn(str(said), ModelWarning, stacklevel=3)
+            tell_script(str(said), ModelWarning)
         return iterations
 
     def _solve(self, dt: float) -> int:
