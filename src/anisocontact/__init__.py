@@ -34,7 +34,7 @@ _PUBLIC = {
     "interface": "AdhesionAndFriction Augmentation ContactLaw Interface LawInSeries LawKinematics "
     "LawResult LawState PythonLaw Response State",
     "point": "DeadLoad DraggingSpring Group History PrescribedPath Push drive",
-    "results": "Results SlavePoints register_quantity",
+    "results": "Results SlavePoints recorded register_quantity",
     "rigid": "MovingSurface Pose RigidBody",
     "mesh": "Axisymmetric Body MeshFile Model Placement PlaneStrain PlaneStress Rotation WholeMesh "
     "build_mesh make_selector make_shape node_near nodes_along register_reader register_selector "

@@ -147,8 +147,8 @@ def check_folder(folder: Path, overwrite: bool = False) -> None:
         )
     if not overwrite:
         raise InputError(
-            f"results folder '{folder}' holds an earlier run: give --overwrite to replace it, "
-            "or another folder with -o"
+            f"results folder '{folder}' holds an earlier run: give --overwrite (in a script "
+            "overwrite=True) to replace it, or another folder with -o"
         )
 
 
