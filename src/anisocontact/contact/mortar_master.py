@@ -106,8 +106,7 @@ class MortarMaster(MeshedMaster):
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
             radius = max(self._comm.allgather(largest_radius(sides.slave, now)))
-            # of a surface that meets itself walls behind the next one are no part of what is met
-            farther = self._self_contact is None
+            farther = self._self_contact is None  # walls behind the next one are not met
             pairs = facing_pairs(sides, sides.searched, now, radius, points.across, farther=farther)
             if self._self_contact is not None:
                 pairs = self._self_contact.oriented(pairs, self.numbers)
