@@ -17,7 +17,8 @@ from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.culprit import Culprit
-from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
+from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, Reached, closed
+from anisocontact.solver.system.prescribed_reached import prescribed_reached
 from anisocontact.solver.system.problem import Problem
 
 #: Random patterns of signs that measure the norm of the forces at the supports.
@@ -64,6 +65,7 @@ class ContactSystem(AssembledSystem):
         self._sides, self._stabilisation = problem.sides, problem.stabilisation
         self._aid = problem.stabilisation
         self._gathering = gathering
+        self._extent = problem.layout.unknowns.extent
         self._nodal_now, self._v = nodal, nodal.reshape(-1).copy()
         self.prescribed = self._rigid.prescribed()
         loose = np.flatnonzero(~self.prescribed)
@@ -164,8 +166,14 @@ class ContactSystem(AssembledSystem):
             MPI.COMM_SELF,
             failed=self._assembly.reactions.failed or self.outgrown,
             correction=self._multiplier_residual() if self.contact_term.simultaneous else None,
+            reached=self._reached(),
         )
         return self.balance.residual.copy()
+
+    def _reached(self) -> Reached:
+        """How far bodies went; what is prescribed is no unknown here, and is reached."""
+        none, extent = np.zeros(0), self._extent
+        return prescribed_reached(none, none, MPI.COMM_SELF, extent, self._nodal_now, self._values)
 
     def _respond(self, u: Floats) -> None:
         """Forces on the nodes at the unknowns `u`."""
