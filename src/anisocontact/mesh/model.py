@@ -42,6 +42,9 @@ class Model:
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> model
+        <Model: bodies block; facet groups block.left, block.right, block.front, block.back, \
+block.bottom, block.top>
         >>> len(model.facets("block.bottom"))
         4
     """
@@ -164,6 +167,10 @@ class Model:
     def unknowns(self) -> NodeUnknowns:
         """Where the displacement of the nodes of `space` is among the unknowns."""
         return NodeUnknowns(self.space)
+
+    def __repr__(self) -> str:
+        groups = ", ".join(self.facet_names()) or "none"
+        return f"<Model: bodies {', '.join(self.body_names())}; facet groups {groups}>"
 
     def body_names(self) -> list[str]:
         """Names of the bodies.
