@@ -155,6 +155,21 @@ def test_what_is_taken_over(deck: Path, capsys: pytest.CaptureFixture[str]):
     assert 'method = "penalty"' in deck.with_suffix(".toml").read_text()
 
 
+@pytest.mark.parametrize(
+    ("times", "increments", "duration"),
+    [("0., 1.", 1, None), ("0., 0.", 1, None), (", 2.", 1, 2), ("0.25", 4, None), ("", 1, None)],
+)
+def test_times_of_a_step_that_are_zero_or_left_out(
+    deck: Path, capsys: pytest.CaptureFixture[str], times, increments, duration
+):
+    """Requirement: a step takes 1, in one increment. Source: the manuals of both codes, where zero
+    is the default. A first time of zero ended with an error of the program itself."""
+    deck.write_text(DECK.replace(" 0.25, 1.\n", f" {times}\n"))
+    case, _ = converted(deck, capsys)
+    assert case["step"][0]["increments"] == increments
+    assert case["step"][0].get("duration") == duration
+
+
 @pytest.mark.usefixtures("no_pictures")
 def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: foot and contact carry the pressure on the head, then the force and the weight
@@ -177,6 +192,8 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
     [
         (" SOLE, DECK", " SOLE, BASE", "*CONTACTPAIR of line 44: base is no facet group"),
         (" SOLE, DECK", " SOLE", "a surface with itself; see self_contact"),
+        (" 0.25, 1.\n", " 0.25, 1e400\n", "*STATIC of line 53: its data are of another kind"),
+        (" 210000., 0.\n", " 1e400, 0.\n", "*ELASTIC"),
         (" 210000., 0.\n", " 1.\n", "*ELASTIC of line 33: 1 numbers, 2 are needed"),
         ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", "*ELASTIC of line 33: 2 numbers, 9 are needed"),
         ("*ELASTIC\n", "*ELASTIC, TYPE=ANISO\n", "TYPE=ANISO is not taken over; see a law"),

@@ -183,6 +183,7 @@ MISTAKES = [
     ),
     (f"{CUBE}*NSET, NSET=back, GENERATE\n4, 1, 1\n", "4, 1, 1 given, GENERATE needs first, last"),
     (f"{CUBE}*NSET, NSET=back, GENERATE\n1, 4, 0\n", "1, 4, 0 given, GENERATE needs first, last"),
+    (f"{CUBE}*NSET, NSET=back, GENERATE\n1, 2, 3, 4\n", "1, 2, 3, 4 given, GENERATE needs first"),
     (CUBE.replace("TYPE=C3D8R, ", ""), "*ELEMENT needs the option TYPE"),
     (CUBE.replace("1, 2, 30, 4,\n 5, 6, 7, 8", "1, 2, 4, 30, 5, 6, 7, 8"), "flat or inverted"),
 ]

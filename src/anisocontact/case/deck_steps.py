@@ -102,8 +102,10 @@ class Steps:
             self.finite = self.finite or card.options.get("NLGEOM", "NO").upper() in ("", "YES")
             return True
         if card.name in STATIC and step:
-            times = [real(v) for v in next(card.fields(), [])]
-            first, whole = (*times, *(1.0, 1.0)[len(times) :])[:2]
+            times = [real(v or "0") for v in next(card.rows(), [])]
+            # what is left out or zero is the default: a step of 1, in one increment
+            whole = (times[1] if len(times) > 1 else 0.0) or 1.0
+            first = (times[0] if times else 0.0) or whole
             here = self._steps[-1]
             here.duration = whole
             here.increments = max(1, min(MOST, math.ceil(whole / first - 1e-9)))

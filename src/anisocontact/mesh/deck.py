@@ -6,6 +6,7 @@ Format: the keyword reference of either; names and keywords do not tell small le
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,7 +72,9 @@ class Card:
         """
         words = ",".join(self.data).replace(",", " ").split()
         try:
-            return np.array(words, dtype=np.float64)
+            found = np.array(words, dtype=np.float64)
+            if np.isfinite(found).all():
+                return found
         except ValueError:
             pass
         try:
@@ -85,11 +88,17 @@ class Card:
 def real(text: str) -> float:
     """A number as Fortran reads it too.
 
+    Raises:
+        ValueError: It is none, or beyond what a number can be.
+
     Example:
         >>> real("1.5d-3")
         0.0015
     """
-    return float(text.replace("d", "e").replace("D", "e"))
+    found = float(text.replace("d", "e").replace("D", "e"))
+    if not math.isfinite(found):
+        raise ValueError(text)
+    return found
 
 
 def read_cards(path: Path, depth: int = 0) -> list[Card]:

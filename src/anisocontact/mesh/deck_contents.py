@@ -269,7 +269,7 @@ class Deck:
         for entries in card.fields():
             if "GENERATE" in card.options:
                 first, last, *step = (int(v) for v in entries)
-                if last < first or min(step, default=1) < 1:
+                if last < first or min(step, default=1) < 1 or len(step) > 1:
                     text = ", ".join(entries)
                     raise InputError(f"{text} given, GENERATE needs first, last and a step > 0")
                 found += range(more + first, more + last + 1, *step)
