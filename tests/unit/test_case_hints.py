@@ -264,3 +264,52 @@ def test_check_says_what_tetrahedra_of_order_one_do(tmp_path, capsys) -> None:
         path.write_text(text.replace("cells =", f'cell = "{cell}"\ncells ='))
         assert main(["check", str(path)]) == 0
         assert ("note      pressures at single nodes" in capsys.readouterr().out) is said
+
+
+FIT = """
+[mesh.ring.shaft]
+inner = 4
+outer = 10.01
+length = 4
+cells = [2, 36, 1]
+[mesh.ring.hub]
+inner = {bore}
+outer = 20
+length = 4
+cells = [3, 48, 1]
+[material.shaft]
+model = "linear-elastic"
+E = 210e3
+nu = 0.3
+[material.hub]
+model = "linear-elastic"
+E = 210e3
+nu = 0.3
+[[contact]]
+slave = "shaft.outer"
+master = "hub.inner"
+friction = {{ coefficients = 0.2 }}
+[[step]]
+name = "shrink"
+increments = 1
+cylindrical = {{ "hub.outer" = {{ tangential = 0, axial = 0 }} }}
+displacement = {{ "shaft.inner" = {{ x = 0, y = 0, z = 0 }} }}
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.parametrize(("bore", "told"), [(10.0, True), (10.2, False)])
+def test_facets_too_flat_to_touch_are_told(tmp_path: Path, bore: float, told: bool) -> None:
+    """A press fit whose overlap is less than the arcs over its facets of order 1.
+
+    Requirement: where no point touches it is said how high the arcs are, if they are higher than
+    the gap that is left; not of a hub that is wider than that.
+    """
+    found = [
+        line
+        for line in _summary(tmp_path, FIT.format(bore=bore))["warnings"]
+        if "at the end" in line
+    ]
+    assert len(found) == 1
+    assert ("arcs over its facets" in found[0]) == told

@@ -209,7 +209,8 @@ def at_end(
             )
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
-            found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
+            flat = _below_arcs(contact, entry["least_gap"])
+            found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap, *flat]))
         if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]
@@ -220,6 +221,23 @@ def at_end(
             share = f"{taken / work:.0%}" if taken <= work else all_of_it
             found.append(text.format(share))
     return found
+
+
+def _below_arcs(contact: Contact, gap: float | None) -> list[str]:
+    """What is said of bodies that do not touch as their facets are flat, if they are.
+
+    Args:
+        contact: A contact that is open.
+        gap: Least gap of its points, length; none or not a number where none has a master.
+    """
+    least = math.nan if gap is None else gap
+    arcs = contact.sagitta
+    if not (arcs > ROUNDING * contact.facet_size and arcs > least >= 0.0):
+        return []
+    return [
+        f"arcs over its facets are {arcs:.3g} high, more than the least gap, {least:.3g}: the "
+        "round bodies that they stand for may touch; round cells (order 2) or finer facets tell"
+    ]
 
 
 def _exact(contact: Contact) -> bool:
