@@ -13,16 +13,17 @@ from anisocontact.contact.multipliers import (
     check,
     simultaneous,
 )
-from anisocontact.contact.nested_uzawa import Graded, NestedUzawa
+from anisocontact.contact.nested_uzawa import Graded, GradedSlender, NestedUzawa
 from anisocontact.contact.semismooth import Semismooth, Singly, Slender, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Schemes of an increment, the usual one and what is tried where that fails: with smaller
-#: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, with
-#: points that close one at a time, and with penalties alone where multipliers are not required.
+#: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, of
+#: slender bodies too, with points that close one at a time, and with penalties alone where
+#: multipliers are not required.
 USUAL, SOFTER, IN_CYCLES, GRADED = "usual", "softer", "in cycles", "graded"
-SLENDER, SINGLY = "slender", "singly"
+SLENDER, GRADED_SLENDER, SINGLY = "slender", "graded slender", "singly"
 PENALTIES = "penalties"
 
 #: Their classes, by `Augmentation.multipliers`.
@@ -34,6 +35,7 @@ SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
         SINGLY: Singly,
         IN_CYCLES: NestedUzawa,
         GRADED: Graded,
+        GRADED_SLENDER: GradedSlender,
     },
     UZAWA: {USUAL: Uzawa},
 }

@@ -13,7 +13,7 @@ from anisocontact.base.array_types import Flags
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.multipliers import Multipliers
 from anisocontact.contact.penalty import PENALTY_FACTOR
-from anisocontact.contact.semismooth import Semismooth
+from anisocontact.contact.semismooth import Semismooth, Slender
 from anisocontact.contact.uzawa import RAISE, Mixing, Uzawa
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
@@ -35,15 +35,17 @@ class NestedUzawa(Uzawa):
 
     Attributes:
         first: Share of the penalties that suit the bodies with which the first cycle is solved.
+        last: The multipliers that follow every correction in the end.
     """
 
     first: ClassVar[float] = 1.0
+    last: ClassVar[type[Semismooth]] = Semismooth
 
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
     ) -> None:
         super().__init__(augmentation, size, penalties, comm)
-        self._last = Semismooth(augmentation, size, penalties, comm)
+        self._last = self.last(augmentation, size, penalties, comm)
         self._ends = False
         self._next: State | None = None
 
@@ -113,3 +115,13 @@ class Graded(NestedUzawa):
             return
         self.factor = min(RAISE * self.factor, self._full)
         self._raised, self._mixing = True, Mixing(self._comm)
+
+
+class GradedSlender(Graded):
+    """The same with a last cycle that has the penalties of bodies that bend.
+
+    Where soft penalties are in balance, points press by a multiplier beside a gap. Stiff ones
+    would open them, up to all that hold a sheet; those of `Slender` keep them, as cycles have.
+    """
+
+    last: ClassVar[type[Semismooth]] = Slender

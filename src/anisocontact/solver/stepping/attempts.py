@@ -9,6 +9,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.contact.multiplier_schemes import (
     GRADED,
+    GRADED_SLENDER,
     IN_CYCLES,
     PENALTIES,
     SINGLY,
@@ -221,9 +222,12 @@ class Attempts:
             schemes = [USUAL, SOFTER]
             if cycles and not self._problem.linear:
                 schemes.append(SLENDER)
-            if led == SINGLY:
-                schemes.append(SINGLY)
-            ways = _following(searching, full, cycles, trusts, sorted(schemes, key=led.__ne__))
+            cyclic = GRADED_SLENDER if self._problem.contact_term.slender else GRADED
+            late = [cyclic, SINGLY] if cycles else []
+            schemes += [one for one in late if one == led != GRADED]
+            schemes.sort(key=led.__ne__)
+            late = [one for one in late if one not in schemes]
+            ways = _following(searching, full, [*schemes, *late], cycles, trusts)
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
@@ -319,7 +323,7 @@ class Attempts:
 
 
 def _following(
-    first: _Attempt, last: _Attempt, cycles: bool, trusts: bool, schemes: Sequence[str]
+    first: _Attempt, last: _Attempt, schemes: Sequence[str], cycles: bool, trusts: bool
 ) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
@@ -332,16 +336,13 @@ def _following(
     Args:
         first: From the extrapolated state.
         last: From the accepted state.
+        schemes: Those of the first attempts, in the order in which they are tried: the one that has
+            led to the last accepted part first.
         cycles: Whether multipliers can be found in cycles instead.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
-        schemes: Those that follow every correction, in the order in which they are tried: the one
-            that has led to the last accepted part first.
     """
     usual = replace(first, spare=cycles)
     begun = [replace(usual, multipliers=one) for one in schemes]
-    if cycles:
-        late = (one for one in (GRADED, SINGLY) if one not in schemes)
-        begun += [replace(usual, multipliers=one) for one in late]
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
     ways = [again] if trusts or cycles else []
     if trusts and cycles:

@@ -16,22 +16,31 @@ def bend(problem: Problem) -> bool:
 
     A slender body at finite strain turns by much of what a correction moves it, and that leaves
     gaps which usual penalties take for a contact that opens: nothing would hold it then. The
-    contacts learn whether it is so.
+    contacts learn whether it is so, and whether any body is slender, however it is held.
 
     Args:
         problem: The problem, in a step.
     """
     contacts = problem.contact_term
-    contacts.bends = (
-        SLENDER in contacts.ways
-        and not problem.linear
-        and slenderness(problem.model, _held_by_contact(problem)) > BENDS
-    )
+    follows = SLENDER in contacts.ways and not problem.linear
+    contacts.slender = follows and _slender(problem, _of_contacts(problem))
+    contacts.bends = contacts.slender and _slender(problem, _held_by_contact(problem))
     return contacts.bends
 
 
-def _held_by_contact(problem: Problem) -> set[str]:
-    """Bodies that contact alone holds, and no face that follows a rigid body keeps in shape."""
+def _slender(problem: Problem, bodies: set[str]) -> bool:
+    """Whether one of some bodies is slender that no face on a rigid body keeps in shape."""
     faces = problem.rigid.faces
     kept = set() if faces is None else {face.group.split(".")[0] for face in faces.faces}
-    return {part for free in problem.stabilisation.loose for part in free.body.parts} - kept
+    return slenderness(problem.model, bodies - kept) > BENDS
+
+
+def _of_contacts(problem: Problem) -> set[str]:
+    """Bodies of which contacts have facets."""
+    names = {name.split(".")[0] for contact in problem.contacts for name in contact.groups}
+    return names & set(problem.model.body_names())
+
+
+def _held_by_contact(problem: Problem) -> set[str]:
+    """Bodies that contact alone holds."""
+    return {part for free in problem.stabilisation.loose for part in free.body.parts}

@@ -25,7 +25,9 @@ class Contacts(Term):
 
     Attributes:
         meshed: Those against facets.
-        bends: Whether a body is so slender that it bends before it is strained.
+        bends: Whether a body that contact alone holds is so slender that it bends before it is
+            strained.
+        slender: Whether any body with a contact is so slender.
     """
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
@@ -34,7 +36,7 @@ class Contacts(Term):
         self._trials = [contact.trials for contact in self._all]
         self.meshed = [contact for contact in self._all if contact.meshed]
         self._smooth = [contact for contact in self._all if not contact.meshed]
-        self._dt, self.bends = 1.0, False
+        self._dt, self.bends, self.slender = 1.0, False, False
         self._failed = False
 
     @override
