@@ -273,8 +273,8 @@ def test_what_goes_on_in_front_is_met_farther() -> None:
     """Facets that oppose another one, which hang together and reach beyond the distance.
 
     Requirement: within the distance all that oppose; up to the farther one what goes on from these
-    by nodes in front of the facet, and nothing else: no wall that stands alone there, and none
-    behind. Source: `Limits`. Facets and distances are exact.
+    by nodes in front of the facet, and nothing else: no wall that stands alone there, none behind,
+    and none where all are seen from aside. Source: `Limits`. Facets and distances are exact.
     """
     # a stair of four facets that rises from where the other one is, and one that stands alone
     row = [
@@ -291,8 +291,8 @@ def test_what_goes_on_in_front_is_met_farther() -> None:
     none = np.zeros(0, np.int64), np.zeros(0, np.int32)
     balls = nodes[facets].mean(axis=1), np.full(len(facets), 2.0)
 
-    def found(farther: float, normal: np.ndarray = up) -> list[int]:
-        args = middle, radius, normal, *balls, np.sign(normal[0, 2]) * down
+    def found(farther: float, normal: np.ndarray = up, theirs: np.ndarray = down) -> list[int]:
+        args = middle, radius, normal, *balls, np.sign(normal[0, 2]) * theirs
         pairs = surface.core.facing(*args, 0.9, farther, *none, 1)
         return pairs[1].tolist()
 
@@ -300,3 +300,4 @@ def test_what_goes_on_in_front_is_met_farther() -> None:
     assert found(1.5) == [0, 1, 2]
     assert found(3.0) == [0, 1, 2, 3]
     assert found(3.0, -up) == [0, 1]
+    assert found(3.0, up, np.tile([0.96, 0.0, -0.28], (len(facets), 1))) == [0, 1]

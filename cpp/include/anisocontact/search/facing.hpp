@@ -23,6 +23,9 @@ struct FacetBalls {
 /// says whether it faces another one, and it covers nothing.
 inline constexpr double edge_on = 1e-3;
 
+/// The same from which on a facet lies on the other one.
+inline constexpr double lies_on = 0.5;
+
 /// Distances from the middle of a facet up to which others are found, and up to which what goes on from
 /// these in front of it is: where a surface rises steeply in front of a facet on which it lies, a part of
 /// it that came and went at a distance would let what the facet meets jump.
@@ -30,8 +33,8 @@ struct Limits {
   double distance, farther;
 };
 
-/// Keeps those of the facets found for facet f that are within the distance, and those in front of it that
-/// hang together with them by nodes.
+/// Keeps those of the facets found for facet f that are within the distance and, where one of them lies on
+/// it, those in front of it that hang together with them by nodes.
 inline void keep_connected(const FacetSurface& surface, const Vec3<double>& middle,
                            const Vec3<double>& normal, const FacetBalls& theirs, double distance,
                            std::vector<std::int32_t>& found) {
@@ -39,6 +42,9 @@ inline void keep_connected(const FacetSurface& surface, const Vec3<double>& midd
     return surface.is_within(g, middle, distance);
   });
   if (far == found.end()) return;
+  const auto lies = [&](std::int32_t g) {
+    return -normal.dot(FacetBalls::row(theirs.normal, static_cast<std::size_t>(g))) > lies_on;
+  };
   std::vector<std::int32_t> met;
   const auto meet = [&](std::int32_t g) {
     const auto nodes = surface.mesh().nodes(static_cast<std::size_t>(g));
@@ -52,8 +58,9 @@ inline void keep_connected(const FacetSurface& surface, const Vec3<double>& midd
   const auto in_front = [&](std::int32_t g) {
     return normal.dot(FacetBalls::row(theirs.middle, static_cast<std::size_t>(g)) - middle) > 0.0;
   };
-  const auto last = std::partition(far, found.end(), in_front);
   auto kept = far;
+  const bool meets = std::any_of(found.begin(), far, lies);
+  const auto last = meets ? std::partition(far, found.end(), in_front) : far;
   for (auto next = std::partition(kept, last, joins); next != kept;
        next = std::partition(kept, last, joins)) {
     std::for_each(kept, next, meet);
