@@ -276,15 +276,12 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
                 where = f"step {accepted.step!r}, increment {accepted.increment}{_part(accepted)}"
                 return _End("stopped", f"{request.why() or 'interrupted'} after {where}")
     except StoppedError as stop:
-        writer.log(f"stopped: {stop}")
-        writer.log_culprits(stop.culprits)
-        writer.keep_failed(stop.failed)
+        writer.log_stop(str(stop), stop.culprits, stop.failed)
         return _End("stopped", str(stop))
     except InputError as error:  # of a law in Python, or a mistake that shows where a step begins
         if built.problem.together.met() is None:
             raise
-        writer.log(f"stopped: {error}")
-        writer.keep_failed(error.failed)
+        writer.log_stop(str(error), failed=error.failed)
         return _End("stopped", str(error), curable=not built.solver.place.begun)
     return _End("done", "")
 

@@ -12,7 +12,6 @@ from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.base.peaks import PEAK
-from anisocontact.contact.beyond_cuts import Led
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetShapes,
@@ -320,11 +319,9 @@ class SlaveNodes(IntegrationPoints):
         return self.far.everywhere(nodal)
 
     def led(self, nodal: Floats) -> Floats:
-        """Values of nodes, with those that follow others on cut faces as of these."""
-        if not isinstance(self._others, Led):
-            return nodal
-        found = nodal.copy()
-        found[self._following] = nodal[self._others.leading]
+        """Values of nodes, with those that follow others on cut faces as of these; collective."""
+        found, owned = nodal.copy(), nodal[: self.far.owned]
+        found[self._following] = self._others.everywhere(owned)[len(owned) :]
         return found
 
     @override

@@ -91,9 +91,7 @@ def _run(
                 writer.accept(accepted)
                 yield accepted
         except StoppedError as stop:
-            writer.log(f"stopped: {stop}")
-            writer.log_culprits(stop.culprits)
-            writer.keep_failed(stop.failed)
+            writer.log_stop(str(stop), stop.culprits, stop.failed)
             writer.close("stopped", str(stop), solver.doubtful)
             raise
         except BaseException as error:

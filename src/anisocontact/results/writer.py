@@ -247,17 +247,25 @@ class Writer:
     def cut(self, cut: Cut) -> None:
         """Log a cut and keep it for the summary."""
         self.log(str(cut))
-        self.log_culprits(cut.culprits, cut.count)
+        self._log_culprits(cut.culprits, cut.count)
         self.summary["cuts"].append(asdict(cut))
 
-    def log_culprits(self, culprits: Sequence[Culprit], count: int = 0) -> None:
+    def _log_culprits(self, culprits: Sequence[Culprit], count: int = 0) -> None:
         """Log the places that caused a failure, and how many there are if not all are given."""
         for one in culprits:
             self.log(f"    {one}")
         if count > len(culprits):
             self.log(f"    and {count - len(culprits)} more")
 
-    def keep_failed(self, point: FailedPoint | None) -> None:
+    def log_stop(
+        self, why: str, culprits: Sequence[Culprit] = (), failed: FailedPoint | None = None
+    ) -> None:
+        """Log why a run stopped, with the places that caused it, and keep a point that failed."""
+        self.log(f"stopped: {why}")
+        self._log_culprits(culprits)
+        self._keep_failed(failed)
+
+    def _keep_failed(self, point: FailedPoint | None) -> None:
         """Write a point at which the laws failed, if this rank has one."""
         if point is None:
             return

@@ -222,12 +222,12 @@ class Attempts:
             schemes = [USUAL, SOFTER]
             if cycles and not self._problem.linear:
                 schemes.append(SLENDER)
-            cyclic = GRADED_SLENDER if self._problem.contact_term.slender else GRADED
-            late = [cyclic, SINGLY] if cycles else []
-            schemes += [one for one in late if one == led != GRADED]
-            schemes.sort(key=led.__ne__)
-            late = [one for one in late if one not in schemes]
-            ways = _following(searching, full, [*schemes, *late], cycles, trusts)
+            if cycles:
+                slender = self._problem.contact_term.slender
+                schemes += [GRADED_SLENDER if slender else GRADED, SINGLY]
+            if led != GRADED:  # it leads bodies that do not bend by detours: 504 corrections for 99
+                schemes.sort(key=led.__ne__)
+            ways = _following(searching, full, schemes, cycles, trusts)
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
@@ -336,8 +336,7 @@ def _following(
     Args:
         first: From the extrapolated state.
         last: From the accepted state.
-        schemes: Those of the first attempts, in the order in which they are tried: the one that has
-            led to the last accepted part first.
+        schemes: Those of the first attempts, in the order in which they are tried.
         cycles: Whether multipliers can be found in cycles instead.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
     """
