@@ -45,3 +45,17 @@ def test_a_side_is_whole_where_meshes_match(opposite: tuple[tuple[int, int], ...
 def test_new_facets_take_the_side_that_those_they_face_leave() -> None:
     """A facet that is faced for the first time, by masters, is a slave of the same fold."""
     assert _sides(4, [(0, 1), (2, 1), (2, 3)], known={0: 1, 1: -1}) == [1, -1, 1, -1]
+
+
+@pytest.mark.parametrize("shift", range(8))
+def test_a_round_end_of_a_fold_is_where_sides_meet(shift: int) -> None:
+    """Eight facets around the end of a fold, each facing the fourth from it: two sides of four.
+
+    What the facets beside each other at the end face is not beside each other.
+    """
+    around = np.roll(np.arange(8), shift)
+    pairs = [(int(around[k]), int(around[k + 4])) for k in range(4)]
+    beside = np.stack([around[:-1], around[1:]], axis=1)
+    found = np.array(_sides(8, pairs, beside))[around]
+    assert abs(found[:4].sum()) == 4
+    assert found[:4].tolist() == (-found[4:]).tolist()

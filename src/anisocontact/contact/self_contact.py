@@ -5,9 +5,9 @@ that the displacements can hold: the sides of a surface that folds onto itself a
 it does. The graph of the pairs is coloured with two colours along its minimum spanning tree, the
 closest pairs first. What faces one another facet by facet, as the lips of a slit whose meshes
 match, is in as many parts, and facets that go on smoothly beside each other have one colour where
-pairs leave it open. A facet keeps its colour, and with it the nodes their history, while anything
-faces it. Where the tree leaves a pair of one colour, as where three walls meet, the facet with the
-lower number is the slave of that pair.
+pairs leave it open, at the round end of a fold last of all. A facet keeps its colour, and with it
+the nodes their history, while anything faces it. Where the tree leaves a pair of one colour, as
+where three walls meet, the facet with the lower number is the slave of that pair.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from anisocontact.base.array_types import Codes, Floats, Ints, Sparse
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Sparse
 from anisocontact.contact.facet_pairs import FacetPairs
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.sharp_edges import SMOOTH, Around
@@ -127,9 +127,9 @@ def with_sides(side: Codes, beside: Ints, first: Ints, second: Ints, apart: Floa
     last = len(apart) + 2.0
     rows = [known, [n], np.minimum(first, second), beside.min(axis=1)]
     columns = [n + (side[known] == MASTER), [n + 1], np.maximum(first, second), beside.max(axis=1)]
-    length = [np.ones(len(known) + 1), rank, np.full(len(beside), last)]
+    length = [np.ones(len(known) + 1), rank, last + _ends(n, beside, first, second)]
     tree = _spanning_tree(n + 2, *map(np.concatenate, (rows, columns, length)))
-    alike = tree * (tree == last)
+    alike = tree * (tree >= last)
     opposed = tree - alike
     # a facet and its image are in one part with those at an odd and at an even distance
     twofold = scipy.sparse.block_array([[alike, opposed], [opposed, alike]])
@@ -147,6 +147,22 @@ def with_sides(side: Codes, beside: Ints, first: Ints, second: Ints, apart: Floa
     taken = faced[side[faced] == 0]
     out[taken] = np.where(slave[taken], SLAVE, MASTER)
     return out
+
+
+def _ends(n: int, beside: Ints, first: Ints, second: Ints) -> Flags:
+    """Which smooth neighbours face neither one facet nor facets beside each other, (k,).
+
+    So it is at the end of a fold, where the surface goes on from one side to the other.
+    """
+    facing, near = _graph(n, first, second), _graph(n, *beside.T)
+    beside_those = facing[beside[:, 0]] @ (near + scipy.sparse.eye_array(n, format="csr"))
+    return np.asarray(beside_those.multiply(facing[beside[:, 1]]).sum(axis=1) == 0.0)
+
+
+def _graph(n: int, first: Ints, second: Ints) -> Sparse:
+    """Both directions of edges between n nodes."""
+    rows, columns = np.append(first, second), np.append(second, first)
+    return scipy.sparse.csr_array((np.ones(len(rows)), (rows, columns)), (n, n))
 
 
 def _spanning_tree(n: int, rows: Ints, columns: Ints, length: Floats) -> Sparse:
