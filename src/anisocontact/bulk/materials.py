@@ -111,7 +111,10 @@ class Isotropic:
             self.nu = INCOMPRESSIBLE
         if not -1.0 < self.nu < 0.5:
             path, bound = f"{field}.nu" if field else "nu", "<=" if self.incompressible else "<"
-            raise InputError(f"{nu!r} given, must be > -1 and {bound} 0.5", field=path)
+            text = f"{nu!r} given, must be > -1 and {bound} 0.5"
+            if nu == 0.5:
+                text += "; what keeps its volume is a material whose name ends on -incompressible"
+            raise InputError(text, field=path)
         self._given = given
 
     @property
