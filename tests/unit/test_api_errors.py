@@ -21,7 +21,16 @@ from anisocontact.bulk import UserEnergy, make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, BoxSpec, Model, build_box, make_shape, read_gmsh
+from anisocontact.mesh import (
+    Body,
+    BoxSpec,
+    Model,
+    build_box,
+    make_shape,
+    node_near,
+    nodes_along,
+    read_gmsh,
+)
 from anisocontact.point import DeadLoad, PrescribedPath
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, Until
@@ -99,6 +108,22 @@ WRONG = {
     "a word for the point of a moment": (
         lambda m: Contact(m, "block.bottom", PLANE, LAWS[2]).resultant("middle"),
         "about: 'middle' given, an array of real numbers needed",
+    ),
+    "threads below one": (
+        lambda m: Interface(PLANE, *LAWS, threads=-1),
+        "threads: -1 given, must be > 0",
+    ),
+    "threads of a projection below one": (
+        lambda m: PLANE.project([[0, 0, 1]], threads=0),
+        "threads: 0 given, must be > 0",
+    ),
+    "a node of a name": (
+        lambda m: node_near("block", "block", (0, 0, 0)),
+        "model: no Model given",
+    ),
+    "nodes of no mesh": (
+        lambda m: nodes_along(None, "block", (0, 0, 0), (1, 0, 0)),
+        "model: no Model given",
     ),
     "numbers for states": (
         lambda m: INTERFACE.update(np.zeros((1, 4)), [[0, 0, 0]]),

@@ -17,7 +17,7 @@ from anisocontact.interface.python_law import PythonLaw
 from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import FAILURE, Response, SlaveSurface, State, as_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.surfaces import Surface, default_threads, points
+from anisocontact.surfaces import Surface, points, threads_of
 
 #: No surface of the slave.
 POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
@@ -41,7 +41,7 @@ class Interface(CopiedByArguments):
         carried: Direction fields and the bodies that carry them.
 
     Raises:
-        InputError: Parts that do not go together, or one in the place of another.
+        InputError: Parts that do not go together, one in the place of another, or threads below 1.
 
     Example:
         >>> from anisocontact.surfaces import make_surface
@@ -73,7 +73,7 @@ class Interface(CopiedByArguments):
             law = ContactLaw(law, adhesion, friction, evolution=evolution)
         self.surface, self.law = surface, law
         self.normal, self.tangential, self.evolution = law.normal, law.tangential, law.evolution
-        self.threads = threads or default_threads()
+        self.threads = threads_of(threads)
         self.dtype, self.carried = law.dtype, law.carried
         if law.evolution not in VECTOR_FORMS:
             if self.needs_slave:

@@ -12,7 +12,7 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-from anisocontact.surfaces import default_threads
+from anisocontact.surfaces import threads_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +102,7 @@ def slide(
             None if axes is None else _checked(axes, "axes", (n, 2, 2)),
             None if increment is None else _checked(increment, "increment", (n, 2)),
             tangent,
-            threads or default_threads(),
+            threads_of(threads),
         )
     )
 

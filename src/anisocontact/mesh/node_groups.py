@@ -35,7 +35,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> L
         Its local number on the rank that owns it, nothing on others.
 
     Raises:
-        InputError: No such body, a point far from it, or several nodes at the same distance.
+        InputError: No mesh, no such body, a point far from it, or several nodes equally far.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -75,7 +75,7 @@ def nodes_along(
         Their local numbers, those this rank owns.
 
     Raises:
-        InputError: No such body, no node on the line, or a line without length.
+        InputError: No mesh, no such body, no node on the line, or a line without length.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -123,6 +123,8 @@ def nodes_at(model: Any, body: str, places: Floats) -> Locals:
 
 def _nodes_of(model: Any, body: str, field: str) -> tuple[Locals, Floats, float]:
     """Nodes of a body that this rank owns, where they are, and the size of the body."""
+    if not hasattr(model, "space"):  # its type is made of this file
+        raise InputError("no Model given", "model")
     space, comm = model.space, model.mesh.comm
     nodes = np.unique(space.dofmap.list[model.cells(body, field)])
     nodes = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int32)

@@ -9,6 +9,7 @@ from anisocontact.surfaces.analytic import (
     Surface,
     default_threads,
     make_surface,
+    threads_of,
 )
 from anisocontact.surfaces.facet_blocks import TOPOLOGIES
 from anisocontact.surfaces.facets import (
@@ -51,4 +52,5 @@ __all__ = [
     "outward_flips",
     "points",
     "relative_variation",
+    "threads_of",
 ]

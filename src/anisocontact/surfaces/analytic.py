@@ -85,6 +85,24 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def threads_of(given: int | None) -> int:
+    """Number of threads of a batch.
+
+    Args:
+        given: What the user gave; all processors if nothing.
+
+    Raises:
+        InputError: It is below 1.
+
+    Example:
+        >>> threads_of(2)
+        2
+    """
+    if given is not None and given < 1:
+        raise InputError(f"{given} given, must be > 0", "threads")
+    return given or default_threads()
+
+
 class Surface(CopiedByArguments):
     """An analytic surface; make one with `make_surface`.
 
@@ -189,7 +207,7 @@ class Surface(CopiedByArguments):
         x = points(x, 3)
         if guess is not None:
             guess = points(guess, 2, "guess", rows=len(x))
-        return Projection(**self.core.project(x, guess, derivatives, threads or default_threads()))
+        return Projection(**self.core.project(x, guess, derivatives, threads_of(threads)))
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float], tuple[bool, bool]]:

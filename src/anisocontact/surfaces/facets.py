@@ -14,7 +14,7 @@ from anisocontact.base.arrays import points
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-from anisocontact.surfaces.analytic import Jet, default_threads
+from anisocontact.surfaces.analytic import Jet, default_threads, threads_of
 from anisocontact.surfaces.facet_blocks import FacetBlocks, finite
 from anisocontact.surfaces.geometry import PointGeometry
 from anisocontact.surfaces.orientation import Orientation, orientation, triangular
@@ -220,7 +220,7 @@ class FacetSurface(CopiedByArguments):
                 limit,
                 sets.offsets,
                 sets.facets,
-                threads or default_threads(),
+                threads_of(threads),
             )
         )
 
@@ -302,7 +302,7 @@ class FacetSurface(CopiedByArguments):
         """
         if not distance >= 0.0:
             raise InputError(f"given {distance}, must not be negative", field="distance")
-        return FacetSets(*self.core.within(points(x, 3), distance, threads or default_threads()))
+        return FacetSets(*self.core.within(points(x, 3), distance, threads_of(threads)))
 
     def rings(self, facet: npt.ArrayLike, count: int = 1) -> FacetSets:
         """Facets and their neighbours, those that share a vertex, `count` rings of them.

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.registry import sliding_rules
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
@@ -79,3 +80,36 @@ def test_axes_in_the_other_order(rule):
     np.testing.assert_array_equal(plain.status, swapped.status)
     np.testing.assert_allclose(swapped.traction, plain.traction, **CLOSE)
     np.testing.assert_allclose(swapped.tangent, plain.tangent, rtol=0, atol=1e-12 * 1e3)
+
+
+def test_slip_angle_counts_towards_the_second_axis():
+    """Two vectors and their mirror image answer as mirror images, with the same angle of slip.
+
+    Requirement: the parameter says from which axis towards which its angle counts, so that it needs
+    no sense of rotation about the normal. Source: a mirror changes no number of the theory that is
+    measured between vectors.
+    """
+    (angle,) = [p for e in sliding_rules() if e.name == "slip-ellipse" for p in e.parameters][1:]
+    assert "from the first friction axis, towards the second," in angle.doc
+    mirror = np.diag([1.0, -1.0, 1.0])
+
+    def sheared(by):
+        """Axes that are 60 degrees apart."""
+        pair = [by @ v for v in ([1.0, 0.0, 0.0], [0.5, np.sqrt(0.75), 0.0])]
+        axes = make_directions("from-vectors", first=pair[0], second=pair[1])
+        return Interface(
+            make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
+            NormalLaw(penalty=1e3),
+            Adhesion(stiffness=(4e2, 1e2), directions=axes),
+            Friction(
+                coefficients=(0.4, 0.2),
+                directions=axes,
+                sliding_rule="slip-ellipse",
+                slip_axes=(2.0, 1.5),
+                slip_angle=0.4,
+            ),
+        )
+
+    plain, mirrored = random_path(sheared(np.eye(3))), random_path(sheared(mirror), mirror)
+    np.testing.assert_array_equal(plain.status, mirrored.status)
+    np.testing.assert_allclose(mirrored.traction @ mirror, plain.traction, **CLOSE)

@@ -8,8 +8,8 @@
 namespace anisocontact::law {
 
 /// K = d_1 (x) d_1/k_1^2 + d_2 (x) d_2/k_2^2: slip normal to (T_1/k_1)^2 + (T_2/k_2)^2 = const
-/// [Michalowski and Mroz 1978]. d_1 is the first friction axis turned about the normal, d_2 normal
-/// to it.
+/// [Michalowski and Mroz 1978]. d_1 is the first friction axis turned towards the second, d_2 normal
+/// to it: axes that a mirror makes left-handed have the mirrored ellipse.
 class SlipEllipse : public Normality<SlipEllipse> {
  public:
   static Descriptor describe() {
@@ -21,7 +21,8 @@ class SlipEllipse : public Normality<SlipEllipse> {
              {"slip_angle",
               Kind::scalar,
               "angle",
-              "angle from the first friction axis to the first axis of the slip ellipse",
+              "angle from the first friction axis, towards the second, to the first axis of the "
+              "slip ellipse",
               Bound::any,
               false,
               {0.0}}}};
