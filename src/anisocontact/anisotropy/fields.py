@@ -98,6 +98,14 @@ def require_regular(surface: Surface, xi: Floats, valid: Flags) -> None:
 
     Raises:
         InputError: It is not somewhere; the first such point is named.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> plate = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> require_regular(plate, np.zeros((1, 2)), np.array([False]))
+        Traceback (most recent call last):
+            ...
+        anisocontact.base.errors.InputError: ...
     """
     wrong = np.flatnonzero(~valid)
     if wrong.size:

@@ -121,6 +121,14 @@ def components(
 
     Raises:
         InputError: The basis does not span the tangent plane.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> tube = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=2.0)
+        >>> xi = np.zeros((1, 2))
+        >>> metric = tube.geometry(xi).a_co  # 4 along the circumference, 1 along the axis
+        >>> components(tube, xi, metric, "mixed").tolist()
+        [[[1.0, 0.0], [0.0, 1.0]]]
     """
     rho = surface.jet(xi).d1
     a = rho @ rho.transpose(0, 2, 1)

@@ -87,6 +87,10 @@ class Strip:
         half_width: Distance of each line from the centre line.
         angle: Angle of the lines to the first coordinate [rad].
         centre: A point of the centre line.
+
+    Example:
+        >>> Strip(half_width=2.0, angle=0.0).contains([[9.0, 1.0], [0.0, 3.0]]).tolist()
+        [True, False]
     """
 
     half_width: float

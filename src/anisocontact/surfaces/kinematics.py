@@ -93,5 +93,12 @@ def relative_variation(
 
     Raises:
         InputError: An array of another shape was given.
+
+    Example:
+        >>> from anisocontact.surfaces.analytic import make_surface
+        >>> plate = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> moved = relative_variation(plate, [[0.0, 0.0]], (0.1, 0, 0.2), (0, 0, 0))
+        >>> moved.xi.tolist(), moved.gap.tolist()
+        ([[0.1, 0.0]], [0.2])
     """
     return convective_velocity(surface, xi, 0.0, d_slave, d_master, exact=False)
