@@ -131,7 +131,9 @@ def _check_normals(
     hit = interface.surface.project(places)
     below = hit.status == PROJECTION_STATUS.index("interior")
     across = idealisation.across(places)
-    leaves = np.abs(np.einsum("ni,ni->n", hit.dgap_dx, across)) > SAME * np.abs(across).max()
+    leaves = np.abs(np.einsum("ni,ni->n", hit.dgap_dx, across)) > SAME * np.abs(across).max(
+        initial=0.0
+    )
     if any(comm.allgather(bool(np.any(leaves & below)))):
         text = "the normal of the surface is not in the plane of the mesh"
         raise InputError(f"{text}, in which it has to be a line", "master")

@@ -28,6 +28,15 @@ def bend(problem: Problem) -> bool:
     return contacts.bends
 
 
+def told_if_unstable(problem: Problem) -> bool:
+    """Whether a state that is not stable is to be told of the present step.
+
+    A body that contact alone holds may stand on a single node where that it stands for rests on
+    more than a facet, and is told only where it is slender.
+    """
+    return not problem.stabilisation.loose or problem.contact_term.slender
+
+
 def _slender(problem: Problem, bodies: set[str]) -> bool:
     """Whether one of some bodies is slender that no face on a rigid body keeps in shape."""
     faces = problem.rigid.faces

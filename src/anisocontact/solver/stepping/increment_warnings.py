@@ -30,6 +30,12 @@ FAR = (
     "body {name!r}, at small strain, is strained by {strain:.2g} as a whole, and forces are off by "
     "a share of that size; {cure}"
 )
+#: What is said of a state that is in equilibrium and not stable.
+UNSTABLE = (
+    "the equilibrium is not stable, as beyond the load of buckling: its tangent has a negative "
+    "determinant, and the least disturbance leads to another one; a small load to one side, or "
+    "nodes that are moved a little to it, leads there"
+)
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4
 
@@ -57,7 +63,7 @@ def lasting(accepted: Accepted) -> dict[str, str]:
     Returns:
         Where it happened and what, by a key that is the same each time.
     """
-    return _placed(accepted, _of_contacts(accepted))
+    return _placed(accepted, _unkept(accepted))
 
 
 def _placed(accepted: Accepted, found: Iterable[tuple[str, str]]) -> dict[str, str]:
@@ -91,8 +97,10 @@ def _summed_up(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield "relaxed", RELAXED
 
 
-def _of_contacts(accepted: Accepted) -> Iterator[tuple[str, str]]:
+def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
     """Reasons for a warning, by what they are about, that nothing else of a run keeps."""
+    if accepted.unstable:
+        yield "unstable", UNSTABLE
     for behind in accepted.behind:
         yield f"behind {behind.body} {behind.master}", str(behind)
     for name, count in accepted.undetermined.items():

@@ -70,6 +70,7 @@ class Accepted:
         relaxed: Whether penalties hold in it, as no multipliers were found.
         slivers: Slave nodes that touch on less than 5 % of their weight where penalties hold, by
             name of the contact; contacts without any are left out.
+        unstable: Whether the equilibrium is not stable, as far as the sign of a determinant tells.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
 
@@ -106,6 +107,7 @@ class Accepted:
     past_cuts: dict[str, float] = field(default_factory=dict)
     relaxed: bool = False
     slivers: dict[str, int] = field(default_factory=dict)
+    unstable: bool = False
     event: str = ""
     missed: str = ""
 

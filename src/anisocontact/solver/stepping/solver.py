@@ -14,7 +14,7 @@ from anisocontact.base.uncopied import Uncopied
 from anisocontact.contact import warn_of
 from anisocontact.contact.multiplier_schemes import SLENDER
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
-from anisocontact.solver.stepping.bending import bend
+from anisocontact.solver.stepping.bending import bend, told_if_unstable
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
@@ -393,6 +393,7 @@ class Solver(Uncopied):
             past_cuts=self._cut_faces.lost(),
             relaxed=outcome.relaxed,
             slivers={name: n for name, n in slivers.items() if n},
+            unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
         )

@@ -14,6 +14,7 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton_iteration import NewtonIteration
+from anisocontact.solver.strategies.stability import unstable
 from anisocontact.solver.strategies.system import System
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.terms.persistent import Arrays
@@ -31,6 +32,7 @@ DEFAULTS: dict[str, OptionValue] = {
     "ksp_type": "preonly",
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
+    "mat_mumps_icntl_33": 1,  # the determinant, of which the sign says whether a state is stable
 }
 #: Methods of PETSc that do not fit, and why.
 _UNFIT = {
@@ -53,12 +55,15 @@ class NewtonResult:
             the last multipliers.
         reason: Empty if it converged, else why it did not.
         culprits: Places that ended it, where they are known.
+        unstable: Whether the last tangent that was factorised has a negative eigenvalue, as far as
+            `unstable` finds one: the state found is not stable.
     """
 
     iterations: int
     residuals: list[float]
     reason: str
     culprits: tuple[Culprit, ...] = ()
+    unstable: bool = False
 
 
 class Newton:
@@ -172,7 +177,9 @@ class Newton:
                 result = replace(result, reason=str(error), culprits=(error.culprit,))
                 again = False
             if not again:
-                return replace(result, iterations=spent)
+                found = not result.reason and spent > 0
+                passed = found and unstable(self.snes.getKSP(), self._problem.comm)
+                return replace(result, iterations=spent, unstable=passed)
             if result.reason:
                 last.copy(x)
             else:
