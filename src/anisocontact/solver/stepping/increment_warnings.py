@@ -33,8 +33,8 @@ FAR = (
 #: What is said of a state that is in equilibrium and not stable.
 UNSTABLE = (
     "the equilibrium is not stable, as beyond the load of buckling: its tangent has a negative "
-    "determinant, and the least disturbance leads to another one; a small load to one side, or "
-    "nodes that are moved a little to it, leads there"
+    "eigenvalue, and the least disturbance leads to another one; a small load to one side while it "
+    "is still stable leads there"
 )
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4

@@ -70,7 +70,7 @@ class Accepted:
         relaxed: Whether penalties hold in it, as no multipliers were found.
         slivers: Slave nodes that touch on less than 5 % of their weight where penalties hold, by
             name of the contact; contacts without any are left out.
-        unstable: Whether the equilibrium is not stable, as far as the sign of a determinant tells.
+        unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
 
