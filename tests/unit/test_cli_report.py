@@ -44,6 +44,24 @@ def quick_pictures(monkeypatch):
     monkeypatch.setattr(shape, "start_vtk", lambda *_: None)
 
 
+def test_pictures_that_cannot_be_written_are_told(capsys, case):
+    """Requirement: no empty picture stands in a report without a word, as VTK leaves one."""
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    done = subprocess.run(
+        ["/bin/sh", "-c", 'ulimit -f 16; exec "$@"', "sh"]
+        + [sys.executable, "-m", "anisocontact", "report", str(out)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "warning: picture deformed: OSError" in done.stderr
+    assert "warning: picture von_mises: OSError" in done.stderr
+    assert 'base64,"' not in (out / "report.html").read_text()
+    assert not [path for path in (out / "pictures").iterdir() if not path.stat().st_size]
+
+
 def test_report_while_the_run_goes_on(quick_pictures, capsys, case, monkeypatch):
     """From another process at any moment: here before, at and after the first increments.
 

@@ -218,6 +218,18 @@ def test_an_encoding_that_lacks_letters(case: Path) -> None:
     assert b"Small block on a 3 \\xb5m hohe gedrehte plate" in done.stdout
 
 
+def test_names_that_are_no_utf_8(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Files of an older system keep the bytes of their names, which DOLFINx and VTK do not take."""
+    out = case.parent / os.fsdecode(b"D\xfcse")
+    words = ["run", str(case), "-o", str(out)]
+    done = subprocess.run([*COMMAND, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("/D\\udcfcse\n")
+    assert (out / "history.csv").is_file()
+    assert main(["report", str(out)]) == 0
+    assert capsys.readouterr().err == ""
+
+
 @pytest.fixture
 def named(case: Path) -> Path:
     """Title, body, groups and steps with names that mean something to whoever shows them."""

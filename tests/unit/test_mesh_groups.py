@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -132,6 +133,25 @@ def test_written_meshes_are_read_as_they_were(tmp_path, capsys, suffix, shape, o
     model = build_mesh([MeshFile(path, placement=Placement(scale=2.0))])
     assert model.order == order
     assert model.count_facets("ring.upper") == model.count_facets("ring.top") > 0
+
+
+@pytest.mark.parametrize("told", [OSError(28, "No space left on device"), OSError("3 of 9 items")])
+def test_a_file_that_cannot_be_written_whole_is_none(tmp_path, monkeypatch, told):
+    """A disk that is full: the file of before stays, and half a mesh has no name."""
+    meshio = pytest.importorskip("meshio")
+    path = tmp_path / "box.msh"
+    path.write_text("of before")
+
+    def written(self, to, **options):
+        Path(to).write_text("half")
+        raise told
+
+    monkeypatch.setattr(meshio.Mesh, "write", written)
+    with pytest.raises(InputError) as caught:
+        write_mesh(box(order=1), path)
+    assert str(caught.value) == f"'{path}' cannot be written: {told.strerror or told}"
+    assert [one.name for one in tmp_path.iterdir()] == ["box.msh"]
+    assert path.read_text() == "of before"
 
 
 def test_command(tmp_path, capsys):

@@ -15,11 +15,11 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import MachineError
-from anisocontact.base.import_hooks import without_its_package
+from anisocontact.base.import_hooks import printable_arguments, without_its_package
 from anisocontact.base.signals import held_back
 
 try:
-    with held_back():  # until the compiled modules are whole
+    with held_back(), printable_arguments():  # until the compiled modules are whole
         from mpi4py import MPI  # isort: skip
 
         import petsc4py  # isort: skip

@@ -7,10 +7,12 @@ import importlib
 import importlib.util
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
+
+from anisocontact.base.errors import printable
 
 #: Modules that have moved into a package: their path of before and that of today. An import by the
 #: path of before works for one more version.
@@ -112,3 +114,18 @@ def without_its_package(name: str) -> None:
         return
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+
+
+@contextlib.contextmanager
+def printable_arguments() -> Iterator[None]:
+    """Let the program have arguments that compiled modules can take while these are imported.
+
+    DOLFINx reads those of the program as it is loaded, and takes no text with bytes that are none
+    in UTF-8, as names of files have them that an older system wrote.
+    """
+    given = sys.argv[:]
+    sys.argv[:] = [printable(argument) for argument in given]
+    try:
+        yield
+    finally:
+        sys.argv[:] = given

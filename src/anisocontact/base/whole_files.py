@@ -57,7 +57,8 @@ def replacing(path: Path) -> Iterator[Path]:
         yield draft
         draft.replace(path)
     except OSError as error:
-        error.filename = error.filename or str(path)
+        if error.errno:  # a text of a library's own stays as it is
+            error.filename = error.filename or str(path)
         raise
     finally:
         draft.unlink(missing_ok=True)

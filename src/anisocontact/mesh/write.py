@@ -11,7 +11,7 @@ import scipy
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import middle_nodes
-from anisocontact.base.whole_files import named_by_user
+from anisocontact.base.whole_files import named_by_user, replacing
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import facet_rows
 from anisocontact.mesh.meshio_files import GROUP, needed
@@ -67,8 +67,8 @@ def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
     names = [*mesh.bodies, *mesh.facets, *mesh.nodes]
     more = _numbered(mesh, blocks) if kind == "gmsh22" else _marked(names, blocks)
     options = {"binary": False} if kind == "gmsh22" else {}
-    with named_by_user(path):
-        meshio.Mesh(mesh.points, blocks, **more).write(path, file_format=kind, **options)
+    with named_by_user(path), replacing(path) as draft:
+        meshio.Mesh(mesh.points, blocks, **more).write(draft, file_format=kind, **options)
 
 
 def _facets(mesh: MeshArrays, rows: Ints) -> tuple[str, Ints]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -260,7 +261,7 @@ def _pieces(path: Path) -> Any:
     from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
     reader = vtkXMLPPolyDataReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))
     reader.Update()
     return pyvista.wrap(reader.GetOutput())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -207,7 +208,11 @@ class Scene:
         self._window.Render()
 
     def write(self, path: str) -> None:
-        """Draw what was added into a PNG."""
+        """Draw what was added into a PNG.
+
+        Raises:
+            OSError: It cannot be written, of which VTK would not say a word.
+        """
         self.render()
         image: Any = vtkWindowToImageFilter()
         image.SetInput(self._window)
@@ -215,9 +220,10 @@ class Scene:
         image.ShouldRerenderOff()
         writer: Any = vtkPNGWriter()
         writer.SetInputConnection(image.GetOutputPort())
-        writer.SetFileName(path)
         writer.SetCompressionLevel(_QUICK)
+        writer.WriteToMemoryOn()
         writer.Write()
+        Path(path).write_bytes(memoryview(writer.GetResult()))
 
     def _add_flat(self, mapper: Any, colour: Colour, width: float) -> None:
         """Add lines in one colour whatever light there is."""

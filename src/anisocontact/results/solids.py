@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +112,7 @@ def read_solid(path: Path) -> Solid:
     """
     parallel = path.suffix == ".pvtu"
     reader: Any = vtkXMLPUnstructuredGridReader() if parallel else vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))
     reader.Update()
     if reader.GetErrorCode() or not reader.GetOutput().GetNumberOfPoints():
         raise InputError(f"'{path}' cannot be read")
