@@ -199,3 +199,31 @@ def test_a_run_of_another_problem_is_one_line(change):
     other = _run(last=-0.04)
     other.restore(replace(kept, common=dict(kept.common)))
     assert [accepted.step for accepted in other.run()] == ["further"]
+
+
+def test_a_slave_of_one_point_is_where_it_was():
+    """Requirement: what rounding is counts on the size of the mesh; one point has none itself.
+
+    On another number of processes positions differ by rounding, and one of them was refused.
+    """
+
+    def made():
+        model = _of_order(build_box({"pad": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))}), 1)
+        floor = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        law = ContactLaw(
+            NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3)
+        )
+        contact = Contact(model, "pad.bottom", floor, law, degree=1)
+        steel = make_material("linear-elastic", E=1e3, nu=0.3)
+        down = Step("press", 2, {"pad.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+        return Solver(Problem(model, {"pad": steel}, [contact]), [down])
+
+    solver = made()
+    next(iter(solver.run()))
+    kept = solver.persistent()
+    (point,) = kept.points
+    moved = [point | {"reference": point["reference"] + 1e-16}]
+    made().restore(replace(kept, points=moved))
+    moved = [point | {"reference": point["reference"] + 1e-6}]
+    with pytest.raises(InputError, match="1 of 1 slave points are not where the state has them"):
+        made().restore(replace(kept, points=moved))

@@ -49,7 +49,14 @@ def _rigid(body: RigidBody) -> dict[str, Any]:
     return told
 
 
-def check_run(kept: Persistent, now: Mapping[str, Any], like: Persistent, begun: int) -> None:
+def size_of(positions: Floats) -> float:
+    """Largest extent of the nodes of a process, with those it shares with others, length."""
+    return float(np.ptp(positions, axis=0).max()) if len(positions) else 0.0
+
+
+def check_run(
+    kept: Persistent, now: Mapping[str, Any], like: Persistent, begun: int, size: float
+) -> None:
     """Refuse a state of another problem; steps that have not begun may be others.
 
     Args:
@@ -57,6 +64,7 @@ def check_run(kept: Persistent, now: Mapping[str, Any], like: Persistent, begun:
         now: What the problem is made of, see `described_run`.
         like: State of the problem as it is now.
         begun: Number of steps that had begun in the state.
+        size: As of `size_of`.
 
     Raises:
         InputError: Names what differs.
@@ -64,9 +72,9 @@ def check_run(kept: Persistent, now: Mapping[str, Any], like: Persistent, begun:
     if "problem" not in kept.common or "position" not in kept.nodal:
         raise InputError("no state of this version: it does not say of which problem it is")
     check_described(kept.common["problem"], now, {"steps": begun})
-    check_positions(kept.nodal["position"], like.nodal["position"], "node")
+    check_positions(kept.nodal["position"], like.nodal["position"], "node", size)
     for one, given in zip(like.points, kept.points, strict=True):
-        check_histories(given, one)
+        check_histories(given, one, size)
 
 
 def as_array(description: Mapping[str, Any]) -> npt.NDArray[np.uint8]:
@@ -95,13 +103,14 @@ def check_described(
         raise InputError(text, found.place)
 
 
-def check_positions(kept: Floats, now: Floats, what: str) -> None:
+def check_positions(kept: Floats, now: Floats, what: str, size: float) -> None:
     """Refuse a state of other nodes or points.
 
     Args:
         kept: Where they were in the reference configuration, (n, 3), length.
         now: Where they are there, (n, 3), length.
         what: Their name.
+        size: As of `size_of`: a slave may be a single point.
 
     Raises:
         InputError: Says how many others there are, or names one that is elsewhere.
@@ -109,7 +118,6 @@ def check_positions(kept: Floats, now: Floats, what: str) -> None:
     if kept.shape != now.shape:
         text = f"the state is that of a problem with {len(kept)} {what}s, there are {len(now)}"
         raise InputError(text)
-    size = float(np.ptp(kept, axis=0).max()) if len(kept) else 0.0
     off = np.flatnonzero(~(np.abs(kept - now) <= SAME * size).all(axis=1))
     if len(off):
         first, second = (", ".join(f"{v:.6g}" for v in x[off[0]]) for x in (now, kept))
@@ -119,17 +127,19 @@ def check_positions(kept: Floats, now: Floats, what: str) -> None:
         )
 
 
-def check_histories(kept: Arrays, now: Arrays) -> None:
+def check_histories(kept: Arrays, now: Arrays, size: float) -> None:
     """Refuse histories of other points, or of laws that keep other variables.
 
     Args:
         kept: Those of a state.
         now: Those of the problem.
+        size: As of `size_of`.
 
     Raises:
         InputError: They are.
     """
-    check_positions(kept.get("reference", np.zeros((0, 3))), now["reference"], "slave point")
+    places = kept.get("reference", np.zeros((0, 3)))
+    check_positions(places, now["reference"], "slave point", size)
     for name, values in now.items():
         there = kept.get(name)
         if there is None or len(there) != len(values) or _fields(there) != _fields(values):

@@ -18,6 +18,7 @@ from anisocontact.solver.stepping.same_problem import (
     check_positions,
     described_contacts,
     numbering,
+    size_of,
 )
 from anisocontact.solver.terms.persistent import Arrays, under
 from anisocontact.solver.terms.term import Term
@@ -86,10 +87,11 @@ class ScriptState:
         if missing := sorted({*own, "u", "poses", "rotations"} - set(kept)):
             raise InputError(f"no state of a problem of this version: it has no {missing[0]!r}")
         check_described(kept["problem"], self._made_of)
-        check_positions(kept["position"], own["position"], "node")
+        size = size_of(own["position"])
+        check_positions(kept["position"], own["position"], "node", size)
         if not np.array_equal(kept["numbering"], own["numbering"]):
             raise InputError("the state is that of a mesh with other cells, or on other processes")
         histories = [under(f"{i}/", kept) for i in range(len(now))]
         for one, given in zip(now, histories, strict=True):
-            check_histories(given, one)
+            check_histories(given, one, size)
         return histories

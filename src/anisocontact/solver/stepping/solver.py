@@ -31,7 +31,12 @@ from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition, fraction
-from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run
+from anisocontact.solver.stepping.same_problem import (
+    as_array,
+    check_run,
+    described_run,
+    size_of,
+)
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.strategies.choice import choose
@@ -184,9 +189,10 @@ class Solver(Uncopied):
             InputError: It is that of another problem: names what differs.
         """
         place = RunPosition.restored(kept.common, self.limits)
-        check_run(kept, self._made_of, self.problem.persistent(), place.steps_begun)
+        size, begun = size_of(self.problem.model.positions), place.steps_begun
+        check_run(kept, self._made_of, self.problem.persistent(), begun, size)
         self._turns.restore(kept.common)
-        self.problem.restore(kept, self.steps[: place.steps_begun], place.stopped)
+        self.problem.restore(kept, self.steps[:begun], place.stopped)
         self._begun = self.problem.begun
         self._energy.restore(kept.common["energy_watch"])
         self._waiting = {n: v for n, v in kept.common.items() if n == "event"}
