@@ -35,6 +35,11 @@ PIECES = "checkpoint"
 FORMAT = 24
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
+#: What is said where points are not found by another number of processes.
+_OF_PROCESSES = (
+    "; it had another number of processes, on which contacts in the plane and at cut faces of "
+    "sectors have other points: go on with that number"
+)
 
 
 @dataclass(frozen=True)
@@ -228,8 +233,10 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
         return not any(len(rows.missing) for rows in (nodal, *points))
 
     stored.search(model.mesh.comm.rank, look)
-    for rows in (nodal, *points):
-        rows.check()
+    nodal.check("the mesh is")
+    before, now = len(stored.pieces) or 1, model.mesh.comm.size
+    for rows in points:
+        rows.check("points of a contact or a material are", _OF_PROCESSES if before != now else "")
     # numbers of unknowns mean something only where they are those of the run that wrote them
     same = model.mesh.comm.size == 1 and nodal.in_order
     return Persistent(
@@ -302,15 +309,20 @@ class _MatchedRows:
             self.values[name] = np.zeros((len(self._position), *values.shape[1:]), dtype)
         self.values[name][at] = values[rows].astype(dtype)
 
-    def check(self) -> None:
+    def check(self, what: str, more: str = "") -> None:
         """Refuse to go on without some of the rows.
+
+        Args:
+            what: What they are of, with its verb.
+            more: What may be the reason.
 
         Raises:
             InputError: Names one that was not found.
         """
         if len(self.missing):
             at = ", ".join(f"{v:.6g}" for v in self._position[self.missing[0]])
-            raise InputError(f"the mesh is not that of the run that is to go on: nothing at ({at})")
+            text = f"{what} not as in the run that is to go on: nothing was at ({at}){more}"
+            raise InputError(text)
 
 
 def _named(kept: Persistent, body: Ints) -> Arrays:

@@ -260,7 +260,7 @@ def _pieces(path: Path) -> Any:
     import pyvista
     from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-    reader = vtkXMLPPolyDataReader()
+    reader: Any = vtkXMLPPolyDataReader()
     reader.SetFileName(os.fsencode(path))
     reader.Update()
     return pyvista.wrap(reader.GetOutput())

@@ -34,8 +34,26 @@ def test_another_order_of_nodes_finds_its_own(case, whole):
     assert all(np.array_equal(found.nodal[n], v) for n, v in wanted.nodal.items())
     assert all(np.array_equal(found.points[0][n], v) for n, v in wanted.points[0].items())
     shuffled["nodal/position"] = shuffled["nodal/position"] + 1e-3
-    with pytest.raises(InputError, match="the mesh is not that of the run that is to go on"):
+    with pytest.raises(InputError, match="the mesh is not as in the run that is to go on"):
         checkpoint.distribute(checkpoint.Stored(shuffled, stored.facts), built.problem.model, like)
+
+
+def test_points_of_another_number_of_processes_are_told(case, whole, tmp_path):
+    """Requirement: where the points are others, not the mesh, the line says so and what to do."""
+    built = build(load(case))
+    stored = checkpoint.load_checkpoint(whole)
+    assert stored is not None
+    like, model = built.solver.persistent(), built.problem.model
+    name = "points/0/reference"
+    moved = stored.arrays | {name: stored.arrays[name] + 1e-3}
+    wrong = "points of a contact or a material are not as in the run that is to go on: nothing was"
+    with pytest.raises(InputError, match=wrong + r" at \([^)]*\)$"):
+        checkpoint.distribute(checkpoint.Stored(moved, stored.facts), model, like)
+    path = tmp_path / "piece.npz"
+    np.savez(path, **moved)
+    of_two = checkpoint.Stored(moved, stored.facts, (path, path))
+    with pytest.raises(InputError, match=wrong + r" at .*; it had another number of processes"):
+        checkpoint.distribute(of_two, model, like)
 
 
 HISTORY = """
