@@ -354,9 +354,10 @@ class Problem(ComposedSystem, Uncopied):
 
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
+        pending = self.reduction.pending()  # first: it may bring the accepted state up to date
         nodal, common = self._restart_state.persistent()
         nodal["position"] = self.model.positions[: self.layout.owned // 3].copy()
-        nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
+        nodal |= {f"{PENDING}{name}": values for name, values in pending.items()}
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, self.assembly.terms.histories(), common)
 
