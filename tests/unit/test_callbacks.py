@@ -83,6 +83,22 @@ def test_a_measure_that_fails(pressed):
         pressed(refuses)
 
 
+def test_what_a_script_draws_is_read_only():
+    """Requirement: pressures scaled in place for a picture are an error, no other solution."""
+    model = build_box({"pad": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, "pad.bottom", plane, Friction(coefficients=0.3))
+    problem = Problem(model, {"pad": LinearElastic(E=100.0, nu=0.3)}, [contact])
+    down = {"pad.top": {"x": 0, "y": 0, "z": -0.01}}
+    for _ in Solver(problem, [Step("press", 2, displacement=down)]).run():
+        last = contact.last
+        given = [last.pressure, last.gap, last.traction, last.normal, last.state, problem.nodal]
+        for values in (*given, last.directions_friction, contact.state["pressure"]):
+            with pytest.raises(ValueError, match="read-only"):
+                values[:] = 0.0
+        assert last.pressure.copy().max() > 0.0
+
+
 @pytest.fixture
 def quantity(tmp_path, unpictured, capsys, monkeypatch):
     """Runs a case with an output quantity; its exit code, and the last line it has written."""

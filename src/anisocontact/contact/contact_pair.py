@@ -294,6 +294,7 @@ class ContactPair:
             if not self.trials.does_work:
                 self.state["energy_adhesion"] = 0.0
             self._trial = None
+        self.last.freeze()
         self.trials.multipliers.end(accepted=True)
         self._begin()
 

@@ -114,6 +114,11 @@ class Response:
     tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
     tangent_slip: Floats = field(default_factory=lambda: np.empty((0, 3, 3)))
 
+    def freeze(self) -> None:
+        """Let nobody write into it: an accepted state that a script draws is what goes on."""
+        for values in vars(self).values():
+            values.flags.writeable = False
+
     @property
     def pressure(self) -> Floats:
         """N, (n,) [stress]."""

@@ -30,8 +30,10 @@ class Configuration:
 
     @property
     def nodal(self) -> Floats:
-        """Displacement of the local nodes, (nodes, 3), length."""
-        return np.asarray(self.u.x.array.reshape(-1, 3))
+        """Displacement of the local nodes, (nodes, 3), length; read only."""
+        values: Floats = self.u.x.array.reshape(-1, 3)
+        values.flags.writeable = False
+        return values
 
     def take(self, x: Vec) -> TrialState:
         """Bring all bodies to a state.
