@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.solver.stepping.limit_load import PressedPoints, limit
+from anisocontact.solver.stepping.limit_load import PressedPoints, friction_needed, limit
 
 MU = 0.3
 EVERY = np.eye(6)
@@ -105,3 +105,40 @@ def test_nothing_is_said_of_a_body_that_no_motion_is_left_to() -> None:
     normal = np.array([[0.0, 0, 1], [0, 0, 1], [-1, 0, 0], [-1, 0, 0]])
     load = np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0])
     assert limit(_points(arms, normal, np.ones(4)), EVERY[:3], load) is None
+
+
+@pytest.mark.parametrize("degrees", [40.0, 50.0, 60.0])
+def test_a_ladder_that_stands_too_flat_needs_more_friction(degrees: float) -> None:
+    """A ladder on a floor and against a wall, loaded in its middle, friction 0.3 at both.
+
+    Source: with m times the friction it slides at both ends from tan(a) = (1 - f^2) / 2 f on,
+    f = 0.3 m [statics of a ladder]. The tolerance is that of the search.
+    """
+    a = np.radians(degrees)
+    end = 0.5 * np.array([np.cos(a), np.sin(a), 0.0])
+    normal = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    needed = friction_needed(
+        _points(np.array([-end, end]), normal, np.ones(2)),
+        EVERY[[0, 1, 5]],
+        np.array([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
+    )
+    slope = np.tan(a)
+    least = (np.sqrt(slope**2 + 1.0) - slope) / MU
+    assert needed == pytest.approx(max(least, 1.0), rel=2e-3)
+
+
+def test_friction_that_is_needed_follows_its_ellipse() -> None:
+    """Coefficients 0.4 and 0.2, a force of a half at 30 degrees; none that pulls away is held.
+
+    Source: as above; nothing but contact that pulls could balance a pull. The corners of the
+    polygon are 0.5 % outside of the ellipse.
+    """
+    ring = _ring()
+    friction = np.zeros((24, 3, 3))
+    friction[:, 0, 0], friction[:, 1, 1] = 0.4, 0.2
+    points = PressedPoints(ring.arms, ring.normal, ring.force, friction)
+    c, s = 0.5 * np.cos(np.pi / 6), 0.5 * np.sin(np.pi / 6)
+    load = np.array([c, s, -1.0, 0.0, 0.0, 0.0])
+    needed = friction_needed(points, EVERY, load)
+    assert needed == pytest.approx(np.hypot(c / 0.4, s / 0.2), rel=6e-3)
+    assert friction_needed(points, EVERY, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) == np.inf

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from tests.verification.test_sides_kept import ANGLE, CLAMP, MU, _laws
 
@@ -14,7 +15,7 @@ from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Friction
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import Body, BoxSpec, PlaneStrain, build_box, build_mesh, make_shape
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Problem, Solver, Step, StoppedError
 from anisocontact.solver.stepping.failures import Failures
@@ -115,3 +116,43 @@ def test_a_moment_far_beyond_friction_on_a_round_master_is_told(moment: float, s
     (number,) = re.findall(r"friction holds ([\d.]+) there at most", told)
     assert float(number) == pytest.approx(held, rel=0.01)
     assert 0.5 < held < 2.0
+
+
+@pytest.mark.parametrize(("friction", "said"), [(0.2, True), (0.3, False)])
+def test_a_ladder_that_nothing_can_hold_is_told_before_anything_presses(
+    friction: float, said: bool
+) -> None:
+    """A bar that leans on a wall at 60 degrees, its weight in the first increment of a run.
+
+    Requirement: it is told that no forces where it touches hold it, and how much friction would;
+    nothing of one that is held. Source: balance of the bar with m times the friction at both ends,
+    which slide. Tolerance: three digits as shown, and those of the search.
+    """
+    tilt = np.radians(60.0)
+    spec = make_shape("rectangle", origin=(0, 0), size=(10, 0.4), cells=(8, 1))
+    model = build_mesh([Body("bar", spec)], idealisation=PlaneStrain())
+    model.mesh.geometry.x[:] = Rotation.from_rotvec([0, 0, tilt]).apply(model.mesh.geometry.x)
+    wall = 10.0 * np.cos(tilt)
+    contacts = [
+        Contact(model, group, make_surface("plane", point=at, normal=up), Friction(coefficients=mu))
+        for group, at, up, mu in (
+            ("bar.left", (0, 0, 0), (0, 1, 0), friction),
+            ("bar.right", (wall, 0, 0), (-1, 0, 0), 0.2),
+        )
+    ]
+    steel = {"bar": make_material("linear-elastic", E=1e4, nu=0.3)}
+    problem = Problem(model, steel, contacts)
+    step = Step("weight", 1, body_force={"bar": {"y": -0.01}})
+    problem.begin(step)
+    told = Failures(problem, []).hint(step, RunPosition.beginning(0, 0.0, Limits()), 1)
+    if not said:
+        assert told == ""
+        return
+    (number,) = re.findall(r"it would take ([\d.]+) times the friction", told)
+    middle = 5.0 * np.cos(tilt) - 0.2 * np.sin(tilt)
+
+    def left(times: float) -> float:
+        across = middle / (10.0 * np.sin(tilt) + times * 0.2 * wall)
+        return float(times * friction * (1.0 - times * 0.2 * across) - across)
+
+    assert float(number) == pytest.approx(brentq(left, 0.5, 3.0), rel=5e-3)

@@ -17,6 +17,7 @@ from anisocontact.solver.stepping.overload import (
     far_beyond,
     reason_of,
     too_much_load,
+    unbalanced,
 )
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
@@ -77,4 +78,5 @@ class Failures:
         """Which loads friction cannot hold at the end of the increment, or of the step."""
         end, now = place.control.increment / step.increments, place.reached(step)
         found = too_much_load(self._problem, end, now) or exhausted(self._problem, now)
-        return found or far_beyond(self._problem, end, now)
+        found = found or far_beyond(self._problem, end, now)
+        return found or unbalanced(self._problem, end, now)

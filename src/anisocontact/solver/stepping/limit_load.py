@@ -21,6 +21,14 @@ FLAT = 0.02
 NONE = 1e-9
 #: Iterations of the least squares, and the share of the largest velocity that is rounding.
 ROUNDS, REST = 60, 1e-7
+#: Corners of the polygon around the ellipse of friction, which touches it on its axes.
+CORNERS = 32
+#: Times the friction beyond which none would do, and how exactly the number is found.
+NO_FRICTION, EXACT = 1e3, 1e-3
+#: Points up to which forces at them are looked for.
+FEW = 2000
+#: What a linear program says that has no solution.
+INFEASIBLE = 2
 
 
 @dataclass(frozen=True)
@@ -105,3 +113,53 @@ def limit(points: PressedPoints, motions: Floats, load: Floats) -> Limit | None:
         mixed /= driven @ mixed
     held = float(points.force @ np.linalg.norm(rubs @ mixed, axis=1))
     return Limit(mixed @ slides, held)
+
+
+def friction_needed(points: PressedPoints, motions: Floats, load: Floats) -> float:
+    """How many times the friction it takes for any forces at points to balance loads.
+
+    Whatever presses where: normal forces are unknowns, and those of `points` do not count. Without
+    such forces there is no equilibrium that touches at these points alone.
+
+    Args:
+        points: Where a body touches.
+        motions: Motions that nothing but contact holds, orthonormal, (k, 6).
+        load: Force, and moment about the centre over the size, (6,).
+
+    Returns:
+        At least 1; infinite where no friction would do; 1 with more points than can be looked at.
+    """
+    driven = motions @ load
+    size = float(np.linalg.norm(driven))
+    if len(points.force) > FEW or size <= NONE * np.linalg.norm(load):
+        return 1.0
+    along, (_, widths, axes) = points.velocities(motions), np.linalg.svd(points.friction)
+    turns = 2.0 * np.pi * (np.arange(CORNERS) + 0.5) / CORNERS
+    corners = np.column_stack([np.cos(turns), np.sin(turns)]) / np.cos(np.pi / CORNERS)
+    rubs = np.einsum("ji,ni,nic->njc", corners, widths[:, :2], axes[:, :2])
+    works = [
+        np.einsum("ni,nik->kn", points.normal, along),
+        np.einsum("njc,nck->knj", rubs, along).reshape(len(motions), -1),
+    ]
+    count = len(points.force)
+    sums = scipy.sparse.kron(scipy.sparse.eye(count), np.ones((1, CORNERS)))
+
+    def balanced(times: float) -> bool:
+        found = scipy.optimize.linprog(
+            np.zeros(count * (1 + CORNERS)),
+            A_ub=scipy.sparse.hstack([-times * scipy.sparse.eye(count), sums]).tocsr(),
+            b_ub=np.zeros(count),
+            A_eq=np.hstack(works),
+            b_eq=-driven / size,
+        )
+        return int(found.status) != INFEASIBLE
+
+    if balanced(1.0):
+        return 1.0
+    low, high = 1.0, NO_FRICTION
+    if not balanced(high):
+        return float("inf")
+    while high > (1.0 + EXACT) * low:
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if balanced(middle) else (middle, high)
+    return high

@@ -19,7 +19,13 @@ from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.stepping.chains import chains
 from anisocontact.solver.stepping.driven import Driven, deformable, driven
-from anisocontact.solver.stepping.limit_load import Limit, PressedPoints, limit
+from anisocontact.solver.stepping.limit_load import (
+    NO_FRICTION,
+    Limit,
+    PressedPoints,
+    friction_needed,
+    limit,
+)
 from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
 from anisocontact.solver.system.problem import Problem
 
@@ -46,6 +52,8 @@ MANY = 2
 CLOSER, LESS_SURE = 0.05, 0.25
 #: Share of a motion that is a turn from which on a moment is told.
 TURNS = 0.1
+#: Share of the loads that presses a body and is what rounding of its place makes of a touch.
+ROUNDED = 1e-9
 #: Share of the loads that friction holds which is no friction at all.
 NOTHING = 1e-9
 #: What can be done about it, and where there is no friction.
@@ -106,6 +114,25 @@ def exhausted(problem: Problem, now: float) -> list[Overload]:
 def far_beyond(problem: Problem, fraction: float, now: float) -> list[Overload]:
     """As of `too_much_load`, of loads without evidence enough but for their size."""
     return [one for one in _found(problem, driven(problem, fraction, now)) if one.far]
+
+
+def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
+    """As of `too_much_load`, of deformable bodies that touch and that nothing presses yet.
+
+    No forces at all at the points where they touch are in balance with their loads.
+    """
+    found = []
+    for body in deformable(problem, fraction, now):
+        points, touched, opened = _pressed(problem, body)
+        if points is None or touched or opened:
+            continue
+        needed = friction_needed(points, body.motions, body.load)
+        if needed > TOO_MUCH:
+            take = f"it would take {needed:.3g} times the friction"
+            why = take if needed < NO_FRICTION else "no friction would do"
+            text = f"no forces where {body.name} touches balance the loads on it: {why}; {WITHOUT}"
+            found.append(Overload(text, True, not _moves(problem)))
+    return found
 
 
 def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:
@@ -254,7 +281,7 @@ def _pressed(problem: Problem, body: Driven) -> tuple[PressedPoints | None, bool
         return None, False, False
     columns = zip(*found, strict=True)
     arms, normal, force, area, rubs = (np.concatenate(column) for column in columns)
-    touched = bool(force.any())
+    touched = bool(force.sum() > ROUNDED * np.linalg.norm(body.load))
     weight = force if touched else area
     closed = weight > 0.0
     if not closed.any():
