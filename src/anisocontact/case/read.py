@@ -39,10 +39,12 @@ class CaseFile:
     Args:
         case: The checked content.
         path: The file; paths inside the case are relative to its folder.
+        text: What stood in it when it was read: it may be a pipe, or changed while the case runs.
     """
 
     case: Case
     path: Path
+    text: str
 
     @property
     def name(self) -> str:
@@ -82,7 +84,8 @@ def load(path: str | Path) -> CaseFile:
         anisocontact.base.errors.InputError: case file 'nowhere.toml' does not exist
     """
     path = Path(path)
-    return CaseFile(validate(read_table(path)), path)
+    text, tables = read_tables(path)
+    return CaseFile(validate(tables), path, text)
 
 
 def validate(data: object) -> Case:
@@ -155,20 +158,21 @@ def as_input(error: Any) -> InputError:
     return InputError(error["msg"], field=dotted(error["loc"]))
 
 
-def read_table(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file.
+def read_tables(path: Path) -> tuple[str, dict[str, Any]]:
+    """Text and tables of a TOML file, read once.
 
     Args:
         path: The file, in UTF-8; a mark of the byte order at its start is passed over.
 
     Returns:
-        The tables, nested.
+        The text, and the tables, nested.
 
     Raises:
         InputError: It is missing, cannot be read or is not TOML.
     """
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        text = path.read_text(encoding="utf-8-sig")
+        return text, tomllib.loads(text)
     except FileNotFoundError:
         raise InputError(f"case file '{path}' does not exist") from None
     except OSError as error:

@@ -39,7 +39,7 @@ def checkpoint_of(folder: Path, file: CaseFile) -> Stored | None:
     stored = load_checkpoint(folder)
     if stored is not None:
         before = tomllib.loads(stored.facts["case"])
-        now = tomllib.loads(file.path.read_text(encoding="utf-8-sig"))
+        now = tomllib.loads(file.text)
         check_same(before, now, stored.facts["begun"])
         check_files(stored.facts["files"], file)
         return stored

@@ -92,7 +92,7 @@ def run(
         InputError: The checkpoint does not fit the mesh or the contacts.
         RunError: Something unforeseen happened; `run.log` has the details.
     """
-    text = built.file.path.read_text(encoding="utf-8-sig")
+    text = built.file.text
     facts = {"case": text, "files": _read_once(built)}
     doubts = built.doubts()
     if checkpoint is not None:

@@ -14,7 +14,7 @@ from anisocontact.base.errors import InputError, within
 from anisocontact.case import objects
 from anisocontact.case.contact_laws import laws
 from anisocontact.case.quantity import AUTO, number
-from anisocontact.case.read import CaseError, as_input, read_table, without_null
+from anisocontact.case.read import CaseError, as_input, read_tables, without_null
 from anisocontact.case.registered import Key, OneOf
 from anisocontact.case.registries import Registries
 from anisocontact.case.section import Section
@@ -95,9 +95,8 @@ def load_trace(path: str | Path) -> Trace:
         CaseError: Something in it is wrong; `errors` has a line for each mistake.
     """
     path = Path(path)
-    data = read_table(path)
-    trace = validate_trace(data)
-    text = path.read_text(encoding="utf-8-sig")
+    text, tables = read_tables(path)
+    trace = validate_trace(tables)
     parent = path.resolve().parent.name
     name = parent if path.stem in ("case", "trace") and parent else path.stem
     return Trace(trace.case, trace.interface, trace.load, trace.group, trace.compared, text, name)

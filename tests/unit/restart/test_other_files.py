@@ -88,6 +88,26 @@ def test_restart_with_another_mesh(meshed: Path, capsys: pytest.CaptureFixture[s
     assert run(meshed, "--restart") == 0
 
 
+def test_a_case_file_that_is_read_once(meshed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`run <(prepare.sh)`: a pipe has its text once, and a file may change while its case runs.
+
+    Requirement: results and checkpoint have the text that was run.
+    """
+    text, folder = meshed.read_text().replace("block.msh", str(meshed.parent / "block.msh")), "out"
+    ends = os.pipe()
+    os.write(ends[1], text.encode())
+    os.close(ends[1])
+    out = meshed.parent / folder
+    assert main(["run", f"/dev/fd/{ends[0]}", "-o", str(out)]) == 0
+    os.close(ends[0])
+    assert (out / "case.toml").read_text() == text
+    meshed.write_text(text)
+    assert run(meshed, "--restart") == 0
+    meshed.write_text(text.replace("E = 1000", "E = 1001"))
+    assert run(meshed, "--restart") == 2
+    assert "material.block.E: 1001 given" in capsys.readouterr().err
+
+
 #: One hexahedron in a deck whose faces are those of a file that it includes.
 DECK = """*INCLUDE, INPUT=parts/nodes.inc
 *ELEMENT, TYPE=C3D8, ELSET=block
