@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -80,7 +80,8 @@ def dissipated(state: State, way: Sequence[Slid], end: State, mean: Floats | flo
     In equilibrium the force that presses grows with the slip, and friction with it: its mean is
     right to second order; of a law in Python whose friction does not grow with the pressure, to
     first order. Where springs let bodies go the way there is taken piece by piece, by the sum of
-    the means; while a point has not slipped its force at yield is taken for that of the next state.
+    the means; while a point that touches has not slipped its force at yield is taken for that of
+    the next state, and one that is open has none.
 
     Args:
         state: The accepted state.
@@ -97,9 +98,9 @@ def dissipated(state: State, way: Sequence[Slid], end: State, mean: Floats | flo
     for now in (*way, Slid.of(end)):
         length, work = now.way - before.way, now.work - before.work
         at_yield = np.divide(work, length, out=force.copy(), where=length > 0.0)
-        first = np.where(slid > 0.0, force, at_yield)
+        first = np.where(slid > 0.0, force, np.where(before.touching, at_yield, 0.0))
         total += np.where(now.touching, 0.5 * (first + at_yield) * (length - slid), 0.0)
-        slid, force = length, at_yield
+        before, slid, force = replace(before, touching=now.touching), length, at_yield
     return np.asarray(total)
 
 
