@@ -17,7 +17,7 @@ from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, BoxSpec, PlaneStrain, build_box, build_mesh, make_shape
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import CoupledFace, Problem, Solver, Step, StoppedError
+from anisocontact.solver import CoupledFace, Cut, Problem, Solver, Step, StoppedError
 from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.surfaces import make_surface
@@ -118,6 +118,25 @@ def test_a_moment_far_beyond_friction_on_a_round_master_is_told(moment: float, s
     assert 0.5 < held < 2.0
 
 
+TILT, WALL = np.radians(60.0), 10.0 * np.cos(np.radians(60.0))
+
+
+def _ladder(friction: float) -> tuple[Problem, Step]:
+    """A bar on a floor and against a wall with friction 0.2, and a step with its weight."""
+    spec = make_shape("rectangle", origin=(0, 0), size=(10, 0.4), cells=(8, 1))
+    model = build_mesh([Body("bar", spec)], idealisation=PlaneStrain())
+    model.mesh.geometry.x[:] = Rotation.from_rotvec([0, 0, TILT]).apply(model.mesh.geometry.x)
+    contacts = [
+        Contact(model, group, make_surface("plane", point=at, normal=up), Friction(coefficients=mu))
+        for group, at, up, mu in (
+            ("bar.left", (0, 0, 0), (0, 1, 0), friction),
+            ("bar.right", (WALL, 0, 0), (-1, 0, 0), 0.2),
+        )
+    ]
+    steel = {"bar": make_material("linear-elastic", E=1e4, nu=0.3)}
+    return Problem(model, steel, contacts), Step("weight", 1, body_force={"bar": {"y": -0.01}})
+
+
 @pytest.mark.parametrize(("friction", "said"), [(0.2, True), (0.3, False)])
 def test_a_ladder_that_nothing_can_hold_is_told_before_anything_presses(
     friction: float, said: bool
@@ -128,31 +147,30 @@ def test_a_ladder_that_nothing_can_hold_is_told_before_anything_presses(
     nothing of one that is held. Source: balance of the bar with m times the friction at both ends,
     which slide. Tolerance: three digits as shown, and those of the search.
     """
-    tilt = np.radians(60.0)
-    spec = make_shape("rectangle", origin=(0, 0), size=(10, 0.4), cells=(8, 1))
-    model = build_mesh([Body("bar", spec)], idealisation=PlaneStrain())
-    model.mesh.geometry.x[:] = Rotation.from_rotvec([0, 0, tilt]).apply(model.mesh.geometry.x)
-    wall = 10.0 * np.cos(tilt)
-    contacts = [
-        Contact(model, group, make_surface("plane", point=at, normal=up), Friction(coefficients=mu))
-        for group, at, up, mu in (
-            ("bar.left", (0, 0, 0), (0, 1, 0), friction),
-            ("bar.right", (wall, 0, 0), (-1, 0, 0), 0.2),
-        )
-    ]
-    steel = {"bar": make_material("linear-elastic", E=1e4, nu=0.3)}
-    problem = Problem(model, steel, contacts)
-    step = Step("weight", 1, body_force={"bar": {"y": -0.01}})
+    problem, step = _ladder(friction)
     problem.begin(step)
     told = Failures(problem, []).hint(step, RunPosition.beginning(0, 0.0, Limits()), 1)
     if not said:
         assert told == ""
         return
     (number,) = re.findall(r"it would take ([\d.]+) times the friction", told)
-    middle = 5.0 * np.cos(tilt) - 0.2 * np.sin(tilt)
+    middle = 5.0 * np.cos(TILT) - 0.2 * np.sin(TILT)
 
     def left(times: float) -> float:
-        across = middle / (10.0 * np.sin(tilt) + times * 0.2 * wall)
+        across = middle / (10.0 * np.sin(TILT) + times * 0.2 * WALL)
         return float(times * friction * (1.0 - times * 0.2 * across) - across)
 
     assert float(number) == pytest.approx(brentq(left, 0.5, 3.0), rel=5e-3)
+
+
+@pytest.mark.slow
+def test_an_increment_is_not_cut_on_and_on_where_nothing_could_hold_a_body() -> None:
+    """The run of the bar that nothing holds.
+
+    Requirement: it ends after two cuts with what is told above, and not at the smallest part.
+    """
+    problem, step = _ladder(0.2)
+    cuts: list[Cut] = []
+    with pytest.raises(StoppedError, match="no forces where body 'bar' touches"):
+        list(Solver(problem, [step]).run(on_cut=cuts.append))
+    assert len(cuts) == 2

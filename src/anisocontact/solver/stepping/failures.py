@@ -12,6 +12,7 @@ from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.level_nodes import level_nodes
 from anisocontact.solver.stepping.overload import (
+    MANY,
     Overload,
     exhausted,
     far_beyond,
@@ -47,6 +48,19 @@ class Failures:
         if cuts:
             return "; ".join(one.text for one in self._overloads(step, place))
         return "; ".join(self._problem.stabilisation.notes) if place.before is None else ""
+
+    def hopeless(self, step: Step, place: RunPosition, cuts: int) -> bool:
+        """Whether smaller parts need not be tried: nothing could hold a body where it touches.
+
+        Args:
+            step: The step.
+            place: Where in it the part failed.
+            cuts: How often the increment has been cut before.
+        """
+        if cuts < MANY:
+            return False
+        end, now = place.control.increment / step.increments, place.reached(step)
+        return any(one.certain for one in unbalanced(self._problem, end, now))
 
     def stopped(self, step: Step, place: RunPosition, outcome: Outcome, tried: str) -> StoppedError:
         """Say why an increment has no solution.

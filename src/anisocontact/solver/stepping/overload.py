@@ -44,7 +44,8 @@ NEARLY = 0.97
 #: Load over the limit of friction that is told with a failure even where pressures that move within
 #: the contact could change the limit: by less than that.
 FAR = 3.0
-#: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted.
+#: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted, and
+#: from which on no more are made where nothing could hold a body where it touches.
 MANY = 2
 #: Smallest part, share of an increment, that is halved where friction would not hold its loads with
 #: the pressures of now, and the loads of now are far below: where the loads say how much presses,
@@ -127,10 +128,11 @@ def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
         if points is None or touched or opened:
             continue
         needed = friction_needed(points, body.motions, body.load)
-        if needed > TOO_MUCH:
-            take = f"it would take {needed:.3g} times the friction"
-            why = take if needed < NO_FRICTION else "no friction would do"
-            text = f"no forces where {body.name} touches balance the loads on it: {why}; {WITHOUT}"
+        if TOO_MUCH < needed < NO_FRICTION:  # what nothing could hold flies off, and that is told
+            text = (
+                f"no forces where {body.name} touches balance the loads on it: it would take "
+                f"{needed:.3g} times the friction; {WITHOUT}"
+            )
             found.append(Overload(text, True, not _moves(problem)))
     return found
 

@@ -342,7 +342,8 @@ class Solver(Uncopied):
         tried, cuts = control.part, control.cuts
         if result.culprits:
             self.place.lost = outcome
-        if outcome.final or not control.cut():
+        final = outcome.final or self._failures.hopeless(step, self.place, cuts)
+        if final or not control.cut():
             last = f"{cuts} cuts, the last part was {tried:.2g}" if cuts else ""
             raise self._failures.stopped(step, self.place, outcome, last)
         more = self._failures.hint(step, self.place, cuts)
