@@ -178,12 +178,15 @@ class Newton:
                 again = False
             if not again:
                 found = not result.reason and spent > 0
-                passed = found and unstable(self.snes.getKSP(), self._problem.comm)
-                return replace(result, iterations=spent, unstable=passed)
+                return replace(result, iterations=spent, unstable=found and self._unstable())
             if result.reason:
                 last.copy(x)
             else:
                 x.copy(last)
+
+    def _unstable(self) -> bool:
+        """Whether the last tangent has a negative eigenvalue, as far as found; collective."""
+        return unstable(self.snes.getKSP(), self._problem.comm)
 
     def _search_along(self, full_steps: bool) -> None:
         """Take full steps, or the line search of the options."""

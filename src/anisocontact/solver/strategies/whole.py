@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 
 
@@ -53,6 +54,11 @@ class WholeLU:
             check_memory(self._ksp.getPC())
             self.close()
         return None if failed or not whole else np.array(found.array_r)
+
+    @property
+    def inverse(self) -> Callable[[Vec, Vec], None] | None:
+        """Writes the solution of another right-hand side; None where there is no factor."""
+        return None if self._ksp is None else self._ksp.getPC().apply
 
     def close(self) -> None:
         """Give back the memory; the next matrix is analysed anew."""

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.fenicsx import Mat
+from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.solver.strategies.condensed.border import PARTS
 from anisocontact.solver.strategies.condensed.factor_renewal import FactorRenewal
 from anisocontact.solver.strategies.condensed.krylov import gmres
@@ -145,6 +145,18 @@ class LaggedFactor:
             found, left = self._corrected(tangent, b, rtol, True)
         # the border, in single precision, cannot tell stiff contacts from the bodies
         return found if left <= rtol else None
+
+    def inverse(self) -> Callable[[Vec, Vec], None] | None:
+        """Solutions with what the last correction came from, as it is; None where there is none."""
+        if self._whole.inverse is not None:
+            return self._whole.inverse
+        if not self._made:
+            return None
+
+        def solution(b: Vec, x: Vec) -> None:
+            x.array[:] = self._factor.solution(np.array(b.array_r))
+
+        return solution
 
     def close(self) -> None:
         """Give back the memory."""

@@ -13,6 +13,7 @@ from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from anisocontact.solver.strategies.database import OptionValue
 from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
+from anisocontact.solver.strategies.stability import least_eigenvalue, may_buckle
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 
@@ -54,6 +55,7 @@ class LaggedNewton(Newton):
         self._system, self._stiffness = problem, KeptStiffness(problem)
         self._factor = LaggedFactor(problem, note, kept)
         self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH, CAREFUL)
+        self._may_buckle = may_buckle(problem)
         pc = self.snes.getKSP().getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(self)
@@ -94,6 +96,14 @@ class LaggedNewton(Newton):
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
             found = np.zeros(len(right))
         x.array[:] = found
+
+    @override
+    def _unstable(self) -> bool:
+        inverse = self._factor.inverse() if self._may_buckle else None
+        if inverse is None:
+            return False
+        tangent, _ = self.snes.getKSP().getOperators()
+        return least_eigenvalue(tangent, inverse) < 0.0
 
     def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, _: Mat) -> None:
         self._system.evaluate_at(x)

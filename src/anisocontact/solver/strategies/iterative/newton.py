@@ -14,6 +14,7 @@ from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.iterative.mixed import MixedKrylov
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
+from anisocontact.solver.strategies.stability import least_eigenvalue, may_buckle
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
@@ -57,7 +58,7 @@ class IterativeNewton(Newton):
         super().__init__(problem, prefix, DEFAULTS | dict(options), on_iteration)
         self.krylov: list[int] = []
         self._note, self._nodal = note, problem
-        self._failures = 0
+        self._failures, self._may_buckle = 0, may_buckle(problem)
         self._forcing = self._new_forcing()
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
@@ -140,6 +141,13 @@ class IterativeNewton(Newton):
             'their volume: all unknowns are factorised from now on, as "direct" does'
         )
         return self._again(x, result)
+
+    @override
+    def _unstable(self) -> bool:
+        if self._levels is None:
+            return super()._unstable()
+        tangent, _ = self.snes.getKSP().getOperators()
+        return self._may_buckle and least_eigenvalue(tangent, self._levels.solve) < 0.0
 
     def _again(self, x: Vec, before: NewtonResult) -> NewtonResult:
         """Go on from where the last try has ended, with its iterations counted."""
