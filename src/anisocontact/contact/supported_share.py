@@ -7,6 +7,9 @@ import numpy as np
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints
 from anisocontact.base.statuses import SLIP, STICK
 
+#: Trace of a projection on one direction, and more than that; it is 2 of two directions.
+_ALONG_ONE = 1.5
+
 
 def supported_share(
     traction: Floats,
@@ -60,18 +63,16 @@ def add_direction(held: Floats, points: Ints, direction: Floats, least: float) -
     held[points[new]] += unit[:, :, None] * unit[:, None]
 
 
-def kept_along(resting: Floats, traction: Floats, last: Floats) -> Floats:
-    """Tractions that keep what they had along directions in which nothing moves, (n, 3), stress.
+def at_rest(resting: Floats) -> Flags:
+    """Points that rest along all of the surface, (n,).
 
-    No equilibrium determines them there, and nothing slips: what a trial before equilibrium has
-    slipped, as one that is extrapolated, would stay as friction.
+    Nothing slips there: what a trial before equilibrium has slipped, as one that is extrapolated,
+    would stay as friction.
 
     Args:
-        resting: Projections on the directions, (n, 3, 3).
-        traction: Of the points, (n, 3), stress.
-        last: Tangential traction of the last accepted increment, (n, 3), stress.
+        resting: Projections on directions along the surface, (n, 3, 3).
     """
-    return np.asarray(traction + (resting @ (last - traction)[..., None])[..., 0])
+    return np.asarray(np.trace(resting, axis1=1, axis2=2) > _ALONG_ONE)
 
 
 class SupportedPoints:
@@ -84,8 +85,24 @@ class SupportedPoints:
     def __init__(self, count: int) -> None:
         self._slid: Flags = np.zeros(count, dtype=bool)
 
-    def bounded(self, traction: Floats, held: Floats, *, status: Codes, **others: Floats) -> Floats:
-        """As of `supported_share`, by the status of the points in the trial before, (n,)."""
+    def bounded(
+        self,
+        traction: Floats,
+        held: Floats,
+        *,
+        status: Codes,
+        still: Flags | bool = False,
+        **others: Floats,
+    ) -> Floats:
+        """As of `supported_share`.
+
+        Args:
+            traction: Of the points, (n, 3), stress.
+            held: Projections on the supported directions, (n, 3, 3).
+            status: Of the points in the trial before, (n,).
+            still: Which points cannot slide, whatever a trial says, (n,).
+            **others: `last`, `carried` and `normal`.
+        """
         self._slid = self._slid | (status == SLIP)
-        kept = (status == STICK) & ~self._slid
-        return supported_share(traction, held, kept=kept, **others)
+        kept = still | ((status == STICK) & ~self._slid)
+        return supported_share(traction, held, kept=np.asarray(kept), **others)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
@@ -21,7 +21,7 @@ from anisocontact.contact.point_changes import PointChanges
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.shared_nodes import SharedNodes
 from anisocontact.contact.slivers import Slivers
-from anisocontact.contact.supported_share import SupportedPoints, kept_along
+from anisocontact.contact.supported_share import SupportedPoints, at_rest
 from anisocontact.contact.trial_laws import TrialLaws
 from anisocontact.interface import State
 
@@ -236,19 +236,33 @@ class Trials:
         traction = about.base.after(change, semismooth.share, now.normal)
         if semismooth.tangential and self.multipliers.exact:
             last = before.turned_to(now, before.vector(self._state["stored"]))
-            if self.master.held is not None:
-                traction = self._supports.bounded(
-                    traction,
-                    self.master.held,
-                    last=last,
-                    carried=about.base.traction,
-                    normal=now.normal,
-                    status=self._now.response.status,
-                )
-            elif (resting := self.master.resting(now.normal)) is not None:
-                traction = kept_along(resting, traction, last)
+            traction = self._along_supports(traction, last, now.normal)
         self.start = semismooth.advance(self.start, traction, now, before, about.base.kept)
         self._let_go_of_immovable()
+
+    def _along_supports(self, traction: Floats, last: Floats, normal: Floats) -> Floats:
+        """Multipliers after a step with what they are along supports, (n, 3), stress.
+
+        Args:
+            traction: After the step, (n, 3), stress.
+            last: Tangential traction of the last accepted increment, (n, 3), stress.
+            normal: Of the surface, (n, 3).
+        """
+        held = self.master.held
+        still: Flags | bool = False
+        if held is None and (held := self.master.resting(normal)) is not None:
+            still = at_rest(held)
+        if held is None or self._linear is None:
+            return traction
+        return self._supports.bounded(
+            traction,
+            held,
+            last=last,
+            carried=self._linear.base.traction,
+            normal=normal,
+            status=self._now.response.status,
+            still=still,
+        )
 
     def _let_go_of_immovable(self) -> None:
         if self._own is not None and self.multipliers.exact:

@@ -12,8 +12,8 @@ q / p = |(0.3 cos c, 0.1 sin c)|, as it is normal to its ellipse [Michalowski, M
 
 Requirement: the energies, and the way of the end, with one increment a way; corrections of an
 increment. Tolerance: measured 1e-3; 0.7 %, as friction below the middle of the strip shifts its
-pressure; 21 corrections along an axis. At an angle the traction across the plane is undetermined
-where a point sticks, so that multipliers are found by way of penalties: 117.
+pressure; 21 corrections along an axis, 25 at an angle, where the traction across the plane comes
+from how points slip.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ force = {{ "strip.right" = {{ x = {!r} }} }}
 """
 
 
-@pytest.mark.parametrize(("angle", "most"), [(0.0, 30), (50.0, 130)])
+@pytest.mark.parametrize(("angle", "most"), [(0.0, 30), (50.0, 35)])
 def test_cycle(to_the_end: Callable[..., Any], angle: float, most: int) -> None:
     """Energies of the first pull and of a cycle, and how far the end goes."""
     holds = float(np.hypot(0.3 * np.cos(np.radians(angle)), 0.1 * np.sin(np.radians(angle))))

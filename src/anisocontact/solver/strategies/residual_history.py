@@ -121,22 +121,30 @@ class ResidualHistory:
         return bool(falls and np.all(fewer <= 0))
 
     def _slips_on(self) -> bool:
-        """Whether the edge of what sticks moves on, by a point in nearly every correction."""
+        """Whether the edge of what sticks moves on, by a point in nearly every correction.
+
+        Or now and then by more than it comes back, with a smaller residual than ever.
+        """
         change = np.diff(self._sticking[-IDLE_OVER - 1 :])
-        return bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
+        steadily = bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
+        return steadily or (_farther(self._sticking[1:]) and self._nearer())
 
     def _moves_on(self) -> bool:
-        """Whether fewer or more points touch than ever, with a smaller residual than ever.
+        """Whether fewer or more points touch or stick than ever, with a smaller residual than ever.
 
-        So it is where the edge of a contact runs along a slender body, by a point in a correction
-        or two: a residual that rises and falls tells it from a cycle by its least alone.
+        So it is where the edge of a contact runs along a slender body, or that of what sticks along
+        a long contact, by some points in a correction or two: a residual that rises and falls tells
+        it from a cycle by its least alone.
         """
-        known, touching = self.residuals[1:], self._touching[1:]
-        if len(known) < 2 * IDLE_OVER:
+        if len(self.residuals) <= 2 * IDLE_OVER:
             return False
-        before, lately = touching[:-IDLE_OVER], touching[-IDLE_OVER:]
-        farther = min(lately) < min(before) or max(lately) > max(before)
-        return farther and min(known[-IDLE_OVER:]) < NEARER * min(known[:-IDLE_OVER])
+        farther = _farther(self._touching[1:]) or _farther(self._sticking[1:])
+        return farther and self._nearer()
+
+    def _nearer(self) -> bool:
+        """Whether one of the last residuals is smaller than all before."""
+        known = self.residuals[1:]
+        return min(known[-IDLE_OVER:]) < NEARER * min(known[:-IDLE_OVER])
 
     def _cycles(self) -> bool:
         """Whether full steps go round a few states: nothing will end that."""
@@ -161,6 +169,12 @@ class ResidualHistory:
 def _keeps(known: Sequence[float]) -> bool:
     """Whether the least of the last norms is more than a share of the least before."""
     return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+
+
+def _farther(counts: Sequence[int]) -> bool:
+    """Whether one of the last numbers of points is smaller or larger than all before."""
+    before, lately = counts[:-IDLE_OVER], counts[-IDLE_OVER:]
+    return min(lately) < min(before) or max(lately) > max(before)
 
 
 def repeats(residuals: Sequence[float], period: int = 2) -> bool:
