@@ -127,10 +127,10 @@ class ResidualHistory:
         """
         change = np.diff(self._sticking[-IDLE_OVER - 1 :])
         steadily = bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
-        return steadily or (_farther(self._sticking[1:]) and self._nearer())
+        return steadily or (_fewer(self._sticking[1:]) and self._nearer())
 
     def _moves_on(self) -> bool:
-        """Whether fewer or more points touch or stick than ever, with a smaller residual than ever.
+        """Whether fewer or more points touch or fewer stick than ever, with the least residual.
 
         So it is where the edge of a contact runs along a slender body, or that of what sticks along
         a long contact, by some points in a correction or two: a residual that rises and falls tells
@@ -138,7 +138,8 @@ class ResidualHistory:
         """
         if len(self.residuals) <= 2 * IDLE_OVER:
             return False
-        farther = _farther(self._touching[1:]) or _farther(self._sticking[1:])
+        touching = self._touching[1:]
+        farther = _fewer(touching) or _fewer([-n for n in touching]) or _fewer(self._sticking[1:])
         return farther and self._nearer()
 
     def _nearer(self) -> bool:
@@ -171,10 +172,9 @@ def _keeps(known: Sequence[float]) -> bool:
     return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
 
-def _farther(counts: Sequence[int]) -> bool:
-    """Whether one of the last numbers of points is smaller or larger than all before."""
-    before, lately = counts[:-IDLE_OVER], counts[-IDLE_OVER:]
-    return min(lately) < min(before) or max(lately) > max(before)
+def _fewer(counts: Sequence[int]) -> bool:
+    """Whether one of the last numbers of points is smaller than all before."""
+    return min(counts[-IDLE_OVER:]) < min(counts[:-IDLE_OVER])
 
 
 def repeats(residuals: Sequence[float], period: int = 2) -> bool:
