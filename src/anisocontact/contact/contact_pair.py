@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.arrays import points as points_of
+from anisocontact.base.arrays import read_only
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
@@ -24,7 +25,7 @@ from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.options import ContactOptions
 from anisocontact.contact.rounded_forces import levers
 from anisocontact.contact.side_of_master import SideOfMaster
-from anisocontact.interface import ContactLaw, Interface, Response
+from anisocontact.interface import ContactLaw, Interface, Response, State
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 
@@ -69,7 +70,6 @@ class ContactPair:
         slave_points: Where the laws are evaluated.
         master: What the points meet.
         trials: What trials start from and which laws answer, with their multipliers.
-        state: Committed history, one record for each point.
         accepted: The points in the accepted increment.
         answer: What the laws answered last: forces of the trial and their derivative.
         ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
@@ -99,13 +99,13 @@ class ContactPair:
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
-        self.state = adjusted(master.initial_state(), options.adjust)
-        self.answer: Answer = master.answer(self.state, 1.0)
+        self._committed = adjusted(master.initial_state(), options.adjust)
+        self.answer: Answer = master.answer(self._committed, 1.0)
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
-        self.trials = EasedTrials(points, master, parts.law, self.state, self._comm)
-        self._energies = ContactEnergies(self.trials, len(self.state), self._comm)
+        self.trials = EasedTrials(points, master, parts.law, self._committed, self._comm)
+        self._energies = ContactEnergies(self.trials, len(self._committed), self._comm)
         check_start(self, points.size)
         self._augmentation = augmentation = options.augmentation
         self._fixed: Floats | None = None
@@ -132,6 +132,11 @@ class ContactPair:
     def areas(self) -> Floats:
         """Area of each slave point after the accepted increment, (n,), length^2."""
         return self.accepted.areas
+
+    @property
+    def state(self) -> State:
+        """Committed history, one record for each point; read only."""
+        return read_only(self._committed)
 
     @property
     def last(self) -> Response:
@@ -189,7 +194,7 @@ class ContactPair:
                 points that cannot move keep their penalty.
             resting: Nodes that are held where they are along directions.
         """
-        self.master.take_resting(resting, self.state)
+        self.master.take_resting(resting, self._committed)
         self.master.take_fixed(fixed)
         self._fixed = fixed
         self._begin()
@@ -225,7 +230,8 @@ class ContactPair:
         if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
         u = points_of(u, 3, "u", rows=self._count)
-        if self.master.place(u, self.state, self.trials.start, self.last.state):
+        last = self.last.state if self.last.state.flags.writeable else self._committed
+        if self.master.place(u, self._committed, self.trials.start, last):
             self.trials.forget()
         self._dt = dt
         try:
@@ -265,11 +271,10 @@ class ContactPair:
         if self.master.body is not None:
             distance += np.linalg.norm(self.master.body.position)
         current = self.current
-        slopes = np.maximum(
-            self.answer.stiffness, self.trials.penalty * current.areas * self.meeting()
-        )
-        force = np.linalg.norm(current.forces, axis=1)
-        return float(np.linalg.norm(levers(slopes, distance, force, self._stiffness)))
+        stiff = self.trials.penalty * current.areas * self.meeting()
+        slopes = np.maximum(self.answer.stiffness, stiff)
+        forces = np.linalg.norm(current.forces, axis=1)
+        return float(np.linalg.norm(levers(slopes, distance, forces, self._stiffness)))
 
     def _stiffness(self) -> Floats:
         """How stiff points are by laws and bodies, (n,), force/length.
@@ -285,16 +290,15 @@ class ContactPair:
 
     def commit(self) -> None:
         """Make the trial the history."""
-        self.ran_off = self.master.commit(self.accepted, self.state, self._trial)
+        self.ran_off = self.master.commit(self.accepted, self._committed, self._trial)
         if self._trial is not None:
             self._gained = self._trial.response.traction - self.last.traction
-            self._energies.commit(self.accepted, self.state, self._trial)
-            self.accepted = self._trial
-            self.state = self.last.state
+            self._energies.commit(self.accepted, self._committed, self._trial)
+            self._committed = self._trial.response.state
             if not self.trials.does_work:
-                self.state["energy_adhesion"] = 0.0
+                self._committed["energy_adhesion"] = 0.0
+            self.accepted = replace(self._trial, response=self._trial.response.frozen())
             self._trial = None
-        self.last.freeze()
         self.trials.multipliers.end(accepted=True)
         self._begin()
 
@@ -312,7 +316,7 @@ class ContactPair:
         if self._fixed is not None:
             held = self.slave_points.held(self._fixed, self.last.normal)
             self.trials.immovable = held & self.master.immovable(self.last.normal)
-        self.trials.begin(self.state, self.accepted)
+        self.trials.begin(self._committed, self.accepted)
 
     @property
     def retraceable(self) -> bool:
@@ -334,16 +338,16 @@ class ContactPair:
 
     def taken_up(self) -> float:
         """As of `ContactEnergies`, from the accepted state to the trial, of this rank."""
-        return self._energies.taken_up(self.accepted, self.state, self.current)
+        return self._energies.taken_up(self.accepted, self._committed, self.current)
 
     def energies(self) -> dict[str, float]:
         """As of `ContactEnergies.totals`, after the accepted increment, over all ranks."""
-        return self._energies.totals(self.state, self.areas)
+        return self._energies.totals(self._committed, self.areas)
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
-        tangents = self.master.at(self.state)[1]
-        slip = np.einsum("ni,nij->nj", self.state["elastic"], tangents)
+        tangents = self.master.at(self._committed)[1]
+        slip = np.einsum("ni,nij->nj", self._committed["elastic"], tangents)
         return self.master.out_of_frame(slip)
 
     def side_of_master(self, u: Floats) -> SideOfMaster:
@@ -352,7 +356,7 @@ class ContactPair:
         Args:
             u: Displacement of the local nodes in the trial, (nodes, 3), length.
         """
-        return self.master.side_of_master(u, self.accepted, self.state, self.current)
+        return self.master.side_of_master(u, self.accepted, self._committed, self.current)
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
         """All that the next increments and the output depend on, an entry for each point.
@@ -363,7 +367,7 @@ class ContactPair:
         now = self.accepted
         fields = {name: getattr(now.response, name) for name in _KEPT}
         own = {
-            "state": self.state,
+            "state": self._committed,
             "points": now.points,
             "areas": now.areas,
             "gained": self._gained,
@@ -381,10 +385,10 @@ class ContactPair:
             u: Displacement of the local nodes in that state, (nodes, 3), length.
         """
         kept = self.master.restore(kept, u)
-        self.state = np.array(kept["state"])
+        self._committed = np.array(kept["state"])
         response = Response(
             tangent=np.empty((0, 3, 3)),
-            state=self.state,
+            state=self._committed,
             **{name: np.array(kept[name]) for name in _KEPT},
         )
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)

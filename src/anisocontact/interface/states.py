@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.array_types import Codes, Flags, Floats
+from anisocontact.base.arrays import read_only
 from anisocontact.base.errors import InputError
 
 #: What could not be done at a point, by its failure code.
@@ -114,10 +115,15 @@ class Response:
     tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
     tangent_slip: Floats = field(default_factory=lambda: np.empty((0, 3, 3)))
 
-    def freeze(self) -> None:
-        """Let nobody write into it: an accepted state that a script draws is what goes on."""
+    def frozen(self) -> Response:
+        """The same that nobody writes into: an accepted state that a script draws is what goes on.
+
+        Its state is that of this one, which its owner may still change.
+        """
         for values in vars(self).values():
-            values.flags.writeable = False
+            if values is not self.state:
+                values.flags.writeable = False
+        return replace(self, state=read_only(self.state))
 
     @property
     def pressure(self) -> Floats:
