@@ -38,8 +38,7 @@ CHANGED = 0.05
 #: Cosine of the angle of friction before and after from which on it has been reversed; share of the
 #: pressures below which it is none, but what equilibrium leaves.
 BACK, NONE = -0.5, 1e-6
-#: What the laws have to add to the mean of both ends, over the work of the increment, or that so
-#: far where it is less: what would warn.
+#: What the laws have to add to the mean of both ends, over the work so far: what would warn.
 COARSE = LARGE
 #: Share of the work so far by which a point may change the rule, and points at which it ends.
 FINE, MOST = 1e-3, 32
@@ -153,12 +152,10 @@ class ContactWork:
         rigid = self._of_rigid()
         local = float(sum(contact.taken_up() for contact in self._contacts)) - rigid.mean
         local -= EndsWork.between(-self._force, -self.forces(nodal), way).mean
-        sums = np.array([local, rigid.missed, rigid.mean])
-        missed, most, moved = self._comm.allreduce(sums).tolist()
+        sums = np.array([local, rigid.missed])
+        missed, most = self._comm.allreduce(sums).tolist()
         missed -= self.of_overlaps()
-        # not over the work so far: cycles that are all alike would count alike until it has grown
-        least = COARSE * min(abs(work), abs(ends.mean + moved))
-        counts = least < abs(missed) < BELIEVED * (ends.missed + most)
+        counts = COARSE * abs(work) < abs(missed) < BELIEVED * (ends.missed + most)
         return missed if counts and np.isfinite(missed) else 0.0
 
     def _led(self) -> bool:
