@@ -38,9 +38,6 @@ RATIO, LEAST_RATIO = 1e4, 1e3
 EXACT, ROUNDED = 1e-8, 16.0 * float(np.finfo(np.float64).eps)
 #: The same at points that are slaves of several contacts: what makes their multipliers unique.
 SHARED_RATIO = 3e2
-#: Share of its weight below which a point that its master hardly covers is compliant. Its force
-#: is to vanish with the weight: held exactly by next to none it would pull and press in turn.
-FADES = 0.1
 #: Tractions that are none, as a share of what the tolerance stands for: 1e-9 of the stiffness of
 #: the bodies times the facet size.
 ROUNDING = 1e-3
@@ -172,10 +169,7 @@ class Multipliers:
         Returns:
             Along the normal and the surface, (n, 2).
         """
-        least = SHARED_RATIO * covered
-        sliver = np.full_like(least, np.inf)
-        np.divide(least, 1.0 - covered / FADES, out=sliver, where=covered < FADES)
-        return np.repeat(np.where(shared, np.minimum(SHARED_RATIO, sliver), sliver)[:, None], 2, 1)
+        return np.repeat(np.where(shared, SHARED_RATIO, np.inf)[:, None], 2, axis=1)
 
     def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from.
