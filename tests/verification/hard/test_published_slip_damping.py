@@ -12,7 +12,7 @@ q / p = |(0.3 cos c, 0.1 sin c)|, as it is normal to its ellipse [Michalowski, M
 
 Requirement: the energies, and the way of the end, with one increment a way; corrections of an
 increment. Tolerance: measured 1e-3; 0.7 %, as friction below the middle of the strip shifts its
-pressure; 21 corrections along an axis, 25 at an angle, where the traction across the plane comes
+pressure; 21 corrections along an axis, 24 at an angle, where the traction across the plane comes
 from how points slip.
 """
 

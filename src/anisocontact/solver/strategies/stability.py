@@ -70,7 +70,7 @@ def may_buckle(problem: Problem) -> bool:
 def least_eigenvalue(tangent: Mat, inverse: Callable[[Vec, Vec], None]) -> float:
     """Least real eigenvalue of a tangent, roughly; zero where it is not found; collective.
 
-    By the method of Davidson [Saad 2011, 8.4]: eigenvalues are sought in a space to which the
+    By the method of Davidson [Davidson 1975]: eigenvalues are sought in a space to which the
     inverse of what is left of the best mode is added. With an exact inverse that is the method of
     Lanczos for the inverse; another one takes more solutions.
 
