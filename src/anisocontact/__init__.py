@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     __version__: str
 
-#: Room -> what scripts use of it. The same names have other meanings nowhere.
+#: Package -> what scripts use of it. The same names have other meanings nowhere.
 _PUBLIC = {
     "surfaces": "FacetSurface Geometry Projection SmoothSurface Surface make_surface",
     "anisotropy": "DirectionField from_callable from_reparametrisation make_directions",
@@ -39,19 +39,20 @@ _PUBLIC = {
     "mesh": "Axisymmetric Body MeshFile Model Placement PlaneStrain PlaneStress Rotation WholeMesh "
     "build_mesh make_selector make_shape node_near nodes_along register_reader register_selector "
     "whole_reader",
-    "bulk": "Expanding Hill LinearElastic LinearElasticIncompressible MooneyRivlin NeoHookean "
+    "bulk": "Hill LinearElastic LinearElasticIncompressible MooneyRivlin NeoHookean "
     "NeoHookeanIncompressible Ogden Orthotropic Plastic PointLaw PointResult PointState "
-    "StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic Yeoh cauchy_stress "
+    "StVenantKirchhoff ThermalExpansion TransverselyIsotropic UserEnergy UserStress Viscoelastic "
+    "Yeoh cauchy_stress "
     "deformation_gradient from_mandel make_material register_material slope_from_mandel "
     "small_strain to_mandel",
     "contact": "Contact close_gaps facet_directions facet_size",
-    "solver": "Accepted Amplitude ContactProblem CoupledFace Course CyclicSymmetry Cylindrical "
-    "ElasticSupport Limits Newton Path Problem Solver Spring Step Strategy Tie Turn "
-    "Until courses_of make_amplitude make_path register_amplitude register_path register_strategy",
+    "solver": "Accepted Amplitude ContactProblem CoupledFace CyclicSymmetry Cylindrical "
+    "ElasticSupport Limits LoadCurve Newton Path Problem Solver Spring Step Strategy Tie Turn "
+    "Until load_curves make_amplitude make_path register_amplitude register_path register_strategy",
 }
-_ROOM_OF = {name: room for room, names in _PUBLIC.items() for name in names.split()}
+_PACKAGE_OF = {name: package for package, names in _PUBLIC.items() for name in names.split()}
 
-__all__ = ["InputError", "ModelWarning", "__version__", *_ROOM_OF]  # noqa: PLE0604 (strings, of the table)
+__all__ = ["InputError", "ModelWarning", "__version__", *_PACKAGE_OF]  # noqa: PLE0604 (strings, of the table)
 
 
 def __getattr__(name: str) -> Any:
@@ -60,10 +61,12 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         found: Any = version("anisocontact")
-    elif name in _ROOM_OF:
-        found = getattr(import_module(f"anisocontact.{_ROOM_OF[name]}"), name)
+    elif name in _PACKAGE_OF:
+        found = getattr(import_module(f"anisocontact.{_PACKAGE_OF[name]}"), name)
     else:
-        raise AttributeError(f"module 'anisocontact' has no attribute {name!r}")
+        from anisocontact.base.renamed import renamed
+
+        return renamed(__name__, name)
     globals()[name] = found
     return found
 

@@ -70,9 +70,9 @@ WRONG = [
     ("normal = { penalty = 1e4 }", "physical_penalty = true", "contact[0].physical_penalty",
      "without the stiffness"),
     ("[[contact]]", '[[contact]]\nmethod = "augmented"\nphysical_penalty = true',
-     "contact[0].physical_penalty", "no layer gives way"),
+     "contact[0].physical_penalty", "which has no compliance"),
     ("[[contact]]", "[[contact]]\nphysical_penalty = true\ntolerance = 1e-6",
-     "contact[0].physical_penalty", "no layer gives way"),
+     "contact[0].physical_penalty", "which has no compliance"),
     ("every = 3", "every = -3", "output.every", "> 0"),
     ("every = 3", "every = 3\ntimes = [-1]", "output.times[0]", ">= 0"),
     # words and tables

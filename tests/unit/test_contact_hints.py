@@ -189,7 +189,7 @@ def test_round_cells_are_not_told_to_be_round():
 )
 def test_stabilisation_is_told_over_the_work_there_is(work: float, said: str) -> None:
     """Without work from outside a share of it says nothing: both are told."""
-    (line,) = at_end([], [], {"external": -work, "stabilisation": 6.0, "flow": 0.0})
+    (line,) = at_end([], [], {"external": -work, "stabilisation": 6.0, "regularisation": 0.0})
     assert line.startswith(f"stabilisation took up {said} the work from outside")
 
 
@@ -292,7 +292,7 @@ def test_a_border_that_a_slide_has_brought_inside_slave_facets_is_told_at_the_en
     entry = dict.fromkeys(same, 0.0) | {"slave": "base.top", "master": "block.bottom"}
     entry |= {"facet_size": 0.75, "points": {"open": 0, "stick": 1, "slip": 0}}
     started = ["contact of base.top with block.bottom: the master ends inside facets of the slave"]
-    none = {"external": 1.0, "stabilisation": 0.0, "flow": 0.0}
+    none = {"external": 1.0, "stabilisation": 0.0, "regularisation": 0.0}
     lines = at_end([contact], [entry], none, told=started if said else [])
     assert ["ends inside facets" in line for line in lines] == ([] if said else [True])
 

@@ -12,6 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.interface import STATUS
 from anisocontact.solver.stepping import energy_watch
 from anisocontact.solver.stepping.energy_watch import CAUSES, EnergyWatch
+from anisocontact.solver.system.reported import Energies
 
 RAN_OFF, JUMPED, CLOSED, SLID, COARSE, OVERLAPPED = CAUSES
 
@@ -37,7 +38,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Any:
         problem: Any = SimpleNamespace(
             contacts=[points],
             bulk=SimpleNamespace(stores=True),
-            energies=lambda: {"external": 0.0, "residual": 0.0, "flow": 0.0},
+            energies=lambda: {"external": 0.0, "residual": 0.0, "regularisation": 0.0},
         )
         monkeypatch.setattr(energy_watch, "initial_overlap", lambda *_: overlap)
         monkeypatch.setattr(EnergyWatch, "_rounded", lambda _: 0.0)
@@ -67,21 +68,30 @@ def test_what_most_points_do_is_the_cause(watch: Any, numbers: Any, cause: str) 
     """
     made, points = watch()
     points.numbers = numbers
-    found = made.after({"external": 10.0, "residual": 1.0, "flow": 0.0}, ran_off=False)
+    found = made.after({"external": 10.0, "residual": 1.0, "regularisation": 0.0}, ran_off=False)
     assert (found.share, found.cause) == (pytest.approx(0.1), cause)
 
 
 def test_an_overlap_is_the_cause_of_the_first_increment_alone(watch: Any) -> None:
     """Requirement: what pushes bodies apart is named, until more of the work has another cause."""
     made, points = watch(overlap=True)
-    found = made.after({"external": 10.0, "residual": 1.0, "flow": 0.0}, ran_off=True)
+    found = made.after({"external": 10.0, "residual": 1.0, "regularisation": 0.0}, ran_off=True)
     assert found.cause == OVERLAPPED
     assert made.pushed_apart
     points.numbers = (10, 5, 5)
-    found = made.after({"external": 10.0, "residual": 1.5, "flow": 0.0}, ran_off=False)
+    found = made.after({"external": 10.0, "residual": 1.5, "regularisation": 0.0}, ran_off=False)
     assert found.cause == OVERLAPPED
     assert not made.pushed_apart
-    found = made.after({"external": 10.0, "residual": 4.5, "flow": 0.0}, ran_off=True)
+    found = made.after({"external": 10.0, "residual": 4.5, "regularisation": 0.0}, ran_off=True)
     assert found.cause == RAN_OFF
-    found = made.after({"external": 10.0, "residual": -4.5, "flow": 1.0}, ran_off=False)
+    found = made.after({"external": 10.0, "residual": -4.5, "regularisation": 1.0}, ran_off=False)
     assert found.cause == JUMPED
+
+
+def test_the_energy_of_regularisation_by_its_name_of_before() -> None:
+    """For one more version, with a warning; a name that never was is refused."""
+    energies = Energies(external=2.0, regularisation=0.5)
+    with pytest.warns(DeprecationWarning, match='"flow" is now "regularisation"'):
+        assert energies["flow"] == 0.5
+    with pytest.raises(KeyError, match="flo"):
+        _ = energies["flo"]

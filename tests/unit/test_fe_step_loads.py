@@ -54,7 +54,7 @@ LINE
         ),
         (
             {"pressure": {"b.top": "high"}},
-            "pressure.b.top: 'high' given, a number or Course needed",
+            "pressure.b.top: 'high' given, a number or LoadCurve needed",
         ),
         (
             {"rotation": {"b.top": Turn((0, 0, 1), 1.0)}, "displacement": {"b.top": {"x": 1.0}}},

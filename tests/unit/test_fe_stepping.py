@@ -157,7 +157,7 @@ def test_points_without_answer_are_named(fe):
     assert cuts[0].count >= len(cuts[0].culprits)
     assert len(cuts[0].culprits) <= NAMED
     assert len(stopped.value.points) > 0
-    assert "cuts, the last part was" in str(stopped.value)
+    assert "cuts, the last sub-increment was" in str(stopped.value)
     assert stopped.value.culprits[0].kind == "law"
 
 
@@ -175,7 +175,7 @@ def test_a_cell_turned_inside_out_is_no_solution(fe):
     hold = {"x": 0.0, "y": 0.0, "z": 0.0}
     step = Step("through", 1, {"block.bottom": hold, "block.top": hold | {"z": -1.5}})
     cuts: list = []
-    with pytest.raises(StoppedError, match="turned inside out") as stopped:
+    with pytest.raises(StoppedError, match="cells are inverted") as stopped:
         list(Solver(problem, [step]).run(on_cut=cuts.append))
     assert cuts[0].culprits[0].kind == "inverted"
     assert stopped.value.culprits[0].position[:2] == pytest.approx((0.5, 0.5))
@@ -190,8 +190,8 @@ def test_corrections_that_invert_cells_are_no_equilibrium() -> None:
     """
     found = [Culprit("inverted", (0.0, 0.0, 0.0), "the cell here is inverted")]
     told = _reason("the residual is not a number", found, [])
-    assert told == "the residual is not a number; cells are turned inside out by corrections"
-    assert _reason(INVERTED, found, []) == "cells are turned inside out"
+    assert told == "the residual is not a number; cells are inverted (det F <= 0) by corrections"
+    assert _reason(INVERTED, found, []) == "cells are inverted (det F <= 0)"
 
 
 def _touching(points: int) -> Any:

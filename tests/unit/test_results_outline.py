@@ -73,14 +73,14 @@ def test_pressures_are_drawn_along_an_outline(run: RunData) -> None:
     """
     view = run.view(run.moments[-1].index, 0)
     (axes,) = maps.pressure(run, 0).axes
-    assert axes.get_xlabel() == "way along the slave [length]"
+    assert axes.get_xlabel() == "arc length along the slave [length]"
     for line in axes.lines:
         place, pressure = line.get_xdata(), line.get_ydata()
         assert len(place) == 16
         assert np.all(np.diff(place) > 0.0)
         assert 0.8 * 2.0 * np.pi * 1.5 < place[-1] < 1.1 * 2.0 * np.pi * 1.5
         assert pressure[0] == pressure[-1] == 0.0
-    assert view.names()[0] == "way along the slave"
+    assert view.names()[0] == "arc length along the slave"
     assert view.flat[:, 1] == pytest.approx(0.0)
 
 

@@ -86,7 +86,7 @@ def test_summary_has_the_promised_keys(run):
     assert (contact["slave"], contact["master"]) == ("block.bottom", "plate")
     assert {"force", "moment", "max_pressure", "max_penetration"} <= set(contact)
     assert set(contact["points"]) == {"open", "stick", "slip"}
-    energies = {"external", "elastic", "adhesion", "friction", "stabilisation", "flow"}
+    energies = {"external", "elastic", "adhesion", "friction", "stabilisation", "regularisation"}
     assert energies | {"residual"} <= set(summary["energy"])
 
 
@@ -137,7 +137,7 @@ def test_summary_says_what_is_out_of_balance(tmp_path, case_text, strategy):
     summary = done.writer.summary
     assert summary["unbalanced"][0] == done.accepted[0].time
     (said,) = [line for line in summary["warnings"] if "out of balance" in line]
-    assert f"in {len(summary['unbalanced'])} increments or parts" in said
+    assert f"in {len(summary['unbalanced'])} increments or sub-increments" in said
 
 
 def test_summary_is_the_last_increment(run):

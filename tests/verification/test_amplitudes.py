@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from anisocontact.base.amplitudes import make_amplitude
-from anisocontact.base.course import Course, courses_of
+from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.errors import InputError
 from anisocontact.base.paths import make_path
 
@@ -68,7 +68,7 @@ def test_circle_goes_round_its_axis(axis):
     Requirement: constant distance and speed, right-handed, in the plane; what begins anywhere goes
     the chord `R(a) r - r`. Source: Rodrigues. Tolerance: rounding.
     """
-    way = courses_of(make_path("circle", radius=3.0, period=2.0, start_deg=30, axis=axis))
+    way = load_curves(make_path("circle", radius=3.0, period=2.0, start_deg=30, axis=axis))
     n = np.array(axis) / np.linalg.norm(axis)
     begun = np.array([2.0, -1.0, 4.0])
     at = np.tile(begun, (len(TIMES), 1))
@@ -113,7 +113,7 @@ def sway(time: float) -> float:
     return math.sin(3.0 * time) + time**2
 
 
-LED = Course(sway, 0.6)
+LED = LoadCurve(sway, 0.6)
 
 
 @pytest.mark.parametrize(
@@ -204,12 +204,12 @@ def test_motion_of_a_rigid_body_follows_a_path():
     from anisocontact.solver import Solver, Step
 
     die, problem = on_die()
-    circle = courses_of(make_path("circle", radius=0.2, period=4.0))
+    circle = load_curves(make_path("circle", radius=0.2, period=4.0))
     held = {"block.bottom": NOTHING}
     steps = [
         Step("press", 1, held, motion={"die": {"z": -0.05}}),
         Step("half", 8, motion={"die": circle}, duration=2.0),
-        Step("rest", 4, motion={"die": {"x": Course(lambda t: t, 0.1, relative=True)}}),
+        Step("rest", 4, motion={"die": {"x": LoadCurve(lambda t: t, 0.1, relative=True)}}),
     ]
     found = []
     for _ in Solver(problem, steps).run():
@@ -229,7 +229,7 @@ def test_a_load_on_a_free_body_follows_from_what_held_it():
     from anisocontact.solver import Solver, Step
 
     die, problem = on_die(free=True)
-    pulse = Course(make_amplitude("sine", period=1.0, offset=3.0), -2.0)
+    pulse = LoadCurve(make_amplitude("sine", period=1.0, offset=3.0), -2.0)
     steps = [
         Step("touch", 1, {"block.bottom": NOTHING}, motion={"die": {"z": -0.05}}),
         Step("let go", 4, motion={"die": {"z": None}}, load={"die": {"z": pulse}}),
@@ -247,7 +247,7 @@ def test_two_groups_that_part_on_shared_nodes_clash():
     """Requirement: equal at the end is not equal all along: one line says who clashes."""
     from anisocontact.solver import Solver, Step
 
-    bump = Course(make_amplitude("cycles", period=1.0))
+    bump = LoadCurve(make_amplitude("cycles", period=1.0))
     step = Step("a", 4, {"bar.left": {"x": 0.0}, "bar.top": {"x": bump}})
     with pytest.raises(InputError, match=r"'bar.left' prescribes 0 and 'bar.top' .* for x on 2"):
         Solver(bar(), [step])
@@ -257,7 +257,7 @@ def test_a_course_out_of_a_symmetry_plane_is_refused():
     """Requirement: found although it comes back into the plane at the end."""
     from anisocontact.solver import Solver, Step
 
-    circle = courses_of(make_path("circle", radius=0.1))
+    circle = load_curves(make_path("circle", radius=0.1))
     step = Step("a", 8, {"bar.bottom": circle})
     with pytest.raises(InputError, match=r"out of the symmetry plane 'bar.left'"):
         Solver(bar(symmetry=["bar.left"]), [step])
@@ -266,14 +266,17 @@ def test_a_course_out_of_a_symmetry_plane_is_refused():
 @pytest.mark.parametrize(
     ("goal", "says"),
     [
-        (Course(lambda t: 1.0), "begins at 1 where 0.25 is: prescribe that value in a step before"),
-        (Course(lambda t: math.nan), "amplitude at the time 0 is nan, a finite number needed"),
         (
-            Course(lambda t: 0.125 + 1e300 * t, 2.0),
+            LoadCurve(lambda t: 1.0),
+            "begins at 1 where 0.25 is: prescribe that value in a step before",
+        ),
+        (LoadCurve(lambda t: math.nan), "amplitude at the time 0 is nan, a finite number needed"),
+        (
+            LoadCurve(lambda t: 0.125 + 1e300 * t, 2.0),
             r"amplitude at the time [\d.]+ is [\d.e+]+, which prescribes .*, less than 1e\+150",
         ),
-        (Course(lambda t: 1 / 0), "amplitude at the time 0: .*ZeroDivisionError"),
-        (Course(lambda t: "much"), "amplitude at the time 0: .*TypeError"),
+        (LoadCurve(lambda t: 1 / 0), "amplitude at the time 0: .*ZeroDivisionError"),
+        (LoadCurve(lambda t: "much"), "amplitude at the time 0: .*TypeError"),
     ],
 )
 def test_wrong_courses_are_one_line(goal, says):
@@ -300,7 +303,7 @@ def test_corners_that_increments_cut_off_are_said(increments, lost):
     """
     from anisocontact.solver import Solver, Step
 
-    way = courses_of(make_path("polyline", x=(0, 0.01, 0.01), y=(0, 0, 0.01), duration=1.0))
+    way = load_curves(make_path("polyline", x=(0, 0.01, 0.01), y=(0, 0, 0.01), duration=1.0))
     held = {"bar.bottom": NOTHING, "bar.top": way}
     said = Solver(bar(), [Step("a", increments, held)]).cautions
     assert [line for line in said if "cut off" in line] == said
@@ -311,7 +314,7 @@ def test_too_few_increments_are_said():
     """Requirement: ten cycles in ten increments look like nothing at all, and that is said."""
     from anisocontact.solver import Solver, Step
 
-    held, wave = {"bar.bottom": NOTHING}, Course(make_amplitude("sine", period=0.1))
+    held, wave = {"bar.bottom": NOTHING}, LoadCurve(make_amplitude("sine", period=0.1))
     few, enough = (
         Solver(bar(), [Step("a", n, held, force={"bar.top": {"x": wave}})]).cautions
         for n in (10, 80)
@@ -328,8 +331,8 @@ def test_strategies_follow_alike(fe):
     """
     from anisocontact.solver import Solver, Step
 
-    circle = courses_of(make_path("circle", radius=0.05))
-    pulse = Course(make_amplitude("cycles", period=0.5), -0.02, relative=True)
+    circle = load_curves(make_path("circle", radius=0.05))
+    pulse = LoadCurve(make_amplitude("cycles", period=0.5), -0.02, relative=True)
     found = []
     for strategy in ("direct", "condensed", "iterative"):
         block = fe.block(fe.interface(), cells=(2, 2, 1))

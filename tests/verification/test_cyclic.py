@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact.bulk import Expanding, make_material
+from anisocontact.bulk import ThermalExpansion, make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -244,7 +244,7 @@ def test_faces_whose_meshes_do_not_match():
     model.name_nodes("one.foot", node_near(model, "one", (1.0, 0.0, 0.0)))
     problem = Problem(
         model,
-        dict.fromkeys(("one", "two"), Expanding(STEEL, 1e-3)),
+        dict.fromkeys(("one", "two"), ThermalExpansion(STEEL, 1e-3)),
         ties=[Tie("two.start", "one.end")],
         cyclic=[CyclicSymmetry("one.start", "two.end", 10)],
     )

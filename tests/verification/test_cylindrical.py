@@ -213,9 +213,9 @@ def test_amplitude_and_finite_strain():
     order 2 of the trapezoidal rule. Source: definition and energy. Tolerance: 1e-12; a rate of 1.9.
     """
     from anisocontact.bulk import make_material
-    from anisocontact.solver import Course, Step
+    from anisocontact.solver import LoadCurve, Step
 
-    grow = Course(lambda t: 0.5 * t**2)
+    grow = LoadCurve(lambda t: 0.5 * t**2)
     left = []
     for increments in (8, 16):
         problem = ring((3, 6, 1), material=make_material("neo-hookean", E=E, nu=NU))

@@ -243,12 +243,14 @@ def test_the_end_of_a_master_is_named(fe: Any) -> None:
     block = fe.block(fe.interface(), cells=(2, 2, 1))
     watch = EnergyWatch(block.problem)
     watch.begin()
-    energies = dict.fromkeys(("elastic", "flow"), 0.0)
+    energies = dict.fromkeys(("elastic", "regularisation"), 0.0)
     coarse = watch.after(energies | {"external": 1.0, "residual": 0.1}, ran_off=False)
     assert (coarse.share, coarse.cause) == (0.1, CAUSES[4])
     off = watch.after(energies | {"external": 2.0, "residual": 0.5}, ran_off=True)
     assert (off.share, off.cause) == (0.25, CAUSES[0])
-    jump = watch.after(energies | {"external": 1.0, "flow": 0.1, "residual": -0.5}, ran_off=False)
+    jump = watch.after(
+        energies | {"external": 1.0, "regularisation": 0.1, "residual": -0.5}, ran_off=False
+    )
     assert jump.cause == CAUSES[1]
     assert jump.share == pytest.approx(0.5 / 3.0)
     assert np.isclose(watch.persistent()[1], 3.0)

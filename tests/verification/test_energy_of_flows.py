@@ -1,4 +1,4 @@
-"""Energies of increments that are come through by viscous flow: none of them is a jump."""
+"""Energies of increments that viscous regularisation solves: none of them is a jump."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from anisocontact.surfaces import make_surface
 def test_a_flow_over_the_limit_of_friction(
     fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
 ) -> None:
-    """A block that sticks and then slips, dragged to there by viscous flow alone.
+    """A block that sticks and then slips, dragged to there by viscous regularisation alone.
 
     Requirement: what work, stores and friction leave open is below 1 % of the work, for one
     increment, two and four, and nothing is called a jump. Source: balance of energy; the force of
@@ -40,7 +40,7 @@ def test_a_flow_over_the_limit_of_friction(
         drag = Step("drag", increments, {"block.top": {"x": 0.02, "y": 0.01}})
         for accepted in Solver(block.problem, [press, drag], strategy=strategy).run():
             energies = accepted.energies
-            assert energies["flow"] == 0.0
+            assert energies["regularisation"] == 0.0
             assert abs(energies["residual"]) < 0.01 * energies["external"]
             assert accepted.imbalance.share < 0.01
         assert energies["friction"] > 0.1 * energies["external"]
@@ -103,7 +103,7 @@ def test_a_flow_with_multipliers_or_a_meshed_master(
     """
     only_flows(monkeypatch)
     energies = _jump(jumping(pair, exact, mortar), pair, strategy).energies
-    assert energies["flow"] == 0.0
+    assert energies["regularisation"] == 0.0
     assert energies["friction"] > 0.1 * energies["external"]
     assert abs(energies["residual"]) < 0.01 * energies["external"]
 

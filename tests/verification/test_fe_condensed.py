@@ -252,7 +252,7 @@ def test_flow_that_leaves_the_reach_begins_anew(monkeypatch: pytest.MonkeyPatch)
     notes: list[str] = []
     ours, _, found = _run(_pair(model, laws, reach=0.2), [PRESS, away], "condensed", notes)
     assert any("widened" in note for note in notes)
-    assert ours[-1].energies["flow"] == 0.0
+    assert ours[-1].energies["regularisation"] == 0.0
     _close(found, wanted, float(np.abs(wanted).max()))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.bulk import Expanding, make_material
+from anisocontact.bulk import ThermalExpansion, make_material
 from anisocontact.bulk.stability import stable_range, unstable_rubbers
 
 TRELOAR = {"mu": (0.63, 0.0012, -0.01), "alpha": (1.3, 5.0, -2.0)}
@@ -70,7 +70,7 @@ def test_what_is_said() -> None:
     good = make_material("mooney-rivlin", C10=1.0, C01=0.5, bulk_modulus=100.0)
     treloar = make_material("ogden", **TRELOAR, bulk_modulus=100.0)
     steel = make_material("linear-elastic", E=1.0, nu=0.3)
-    bodies = {"a": soft, "b": good, "c": treloar, "d": steel, "e": Expanding(soft, 1e-4)}
+    bodies = {"a": soft, "b": good, "c": treloar, "d": steel, "e": ThermalExpansion(soft, 1e-4)}
     said = unstable_rubbers(bodies)
     assert [line.partition(":")[0] for line in said] == ["body 'a'", "body 'e'"]
     assert "tension or compression below 0.70 and beyond 1.41" in said[0]

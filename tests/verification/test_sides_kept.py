@@ -298,7 +298,7 @@ def test_a_block_that_its_load_tips_over(master: str) -> None:
         Step("press", 1, CLAMP if master == "plate" else {}, force={"block.top": {"z": -1.0}}),
         Step("pull", 1, force={"block.top": {"x": 0.8}}),
     ]
-    said = "equilibrium is lost, and the bodies flow until body 'block' (has turned|is behind)"
+    said = "viscous regularisation goes on until body 'block' (has turned|is behind)"
     with pytest.raises(StoppedError, match=said) as stopped:
         list(Solver(problem, steps, limits=Limits(smallest=0.1), strategy="direct").run())
     assert [culprit.kind for culprit in stopped.value.culprits] == ["behind"]
@@ -323,7 +323,7 @@ def test_every_step_of_a_flow_is_looked_at(strategy: str, monkeypatch: pytest.Mo
         return Culprit("behind", (0.0, 0.0, 0.0), "body 'block' is behind") if asked[-1] else None
 
     monkeypatch.setattr(SidesKept, "objection", objection)
-    said = "equilibrium is lost, and the bodies flow until body 'block' is behind"
+    said = "equilibrium is lost, and viscous regularisation goes on until body 'block' is behind"
     with pytest.raises(StoppedError, match=said):
         list(Solver(problem, steps, limits=Limits(smallest=0.25), strategy=strategy).run())
     assert sum(asked) == 1

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
-from anisocontact.bulk import Expanding, make_material, materials
+from anisocontact.bulk import ThermalExpansion, make_material, materials
 from anisocontact.cli import main
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results import Results
@@ -57,7 +57,7 @@ MATERIALS: dict[str, tuple[str, dict[str, Any]]] = {
 def _heated(name: str, temperature: float, held: dict[str, Any]) -> Problem:
     model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
     model_name, given = MATERIALS[name]
-    law = Expanding(make_material(model_name, **given), EXPANSION)
+    law = ThermalExpansion(make_material(model_name, **given), EXPANSION)
     problem = Problem(model, {"bar": law})
     step = Step("heat", 2, held, temperature={"bar": temperature})
     for _ in Solver(problem, [step]).run():
@@ -126,7 +126,7 @@ def test_temperature_that_is_linear_in_place() -> None:
     `E a dT`, what the soft bed that holds the body along x makes.
     """
     model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2), order=2)})
-    law = Expanding(make_material("linear-elastic", **HOOKE), EXPANSION, lambda x: x[0])
+    law = ThermalExpansion(make_material("linear-elastic", **HOOKE), EXPANSION, lambda x: x[0])
     bed, planes = ElasticSupport("bar.right", 1e-5, 0.0), ["bar.front", "bar.bottom"]
     problem = Problem(model, {"bar": law}, attached=[bed], symmetry=planes)
     for _ in Solver(problem, [Step("heat", 1, temperature={"bar": 100.0})]).run():

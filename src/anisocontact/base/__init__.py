@@ -1,1 +1,1 @@
-"""What every room uses: errors, the registry, arrays, processes, files written whole, limits."""
+"""What every package uses: errors, the registry, arrays, processes, files written whole, limits."""

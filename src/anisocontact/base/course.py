@@ -125,7 +125,7 @@ class LinearHistory:
 
 @typed
 @dataclass(frozen=True)
-class Course:
+class LoadCurve:
     """A value times an amplitude of the time since the beginning of the step.
 
     The prescribed value is `value A(t)`, or with `relative` at `value (A(t) - A(0))` from where it
@@ -138,9 +138,9 @@ class Course:
         relative: Whether it counts from where it is.
 
     Example:
-        >>> Course(lambda t: t**2, 3.0).at(0.5, 4.0, 0.0)
+        >>> LoadCurve(lambda t: t**2, 3.0).at(0.5, 4.0, 0.0)
         12.0
-        >>> Course(lambda t: 1.0 + t, 3.0, relative=True).at(1.0, 1.0, 10.0)
+        >>> LoadCurve(lambda t: 1.0 + t, 3.0, relative=True).at(1.0, 1.0, 10.0)
         13.0
     """
 
@@ -185,8 +185,8 @@ class Course:
         places = np.arange(_WAY + 1) / _WAY
         return max(abs(float(self.at(share, duration, start))) for share in places)
 
-    def scaled(self, factor: float) -> Course:
-        """The course of a multiple."""
+    def scaled(self, factor: float) -> LoadCurve:
+        """The load curve of a multiple."""
         return replace(self, value=factor * self.value)
 
     def coarse(self, duration: float, increments: int) -> bool:
@@ -215,7 +215,7 @@ class Course:
                 raise InputError(f"{text} {again:g}: it must depend on the time alone")
 
     def __str__(self) -> str:
-        return "a course"
+        return "a load curve"
 
     def _seen(self, duration: float, increments: int) -> tuple[Floats, Floats]:
         """Values at many places of a step, and what straight increments make of them."""
@@ -243,23 +243,23 @@ class Course:
 
 
 #: What a step takes for a prescribed value: a number at its end, or all the way.
-PrescribedValue = float | Course
+PrescribedValue = float | LoadCurve
 
 
-def history_of(given: PrescribedValue) -> LinearHistory | Course:
+def history_of(given: PrescribedValue) -> LinearHistory | LoadCurve:
     """How a value goes along the step that prescribes it.
 
     Args:
         given: What the step is given.
 
     Returns:
-        A ramp to a number, or the course itself.
+        A ramp to a number, or the load curve itself.
 
     Example:
-        >>> history_of(2.0).end(0.0, 1.0), history_of(Course(lambda t: t)).end(0.0, 4.0)
+        >>> history_of(2.0).end(0.0, 1.0), history_of(LoadCurve(lambda t: t)).end(0.0, 4.0)
         (2.0, 4.0)
     """
-    if isinstance(given, Course):
+    if isinstance(given, LoadCurve):
         return given
     # a number of NumPy would carry its own precision into all that is computed with it
     return LinearHistory(float(given) if is_number(given) else given)
@@ -272,7 +272,7 @@ def check_prescribed(given: Any) -> None:
         given: What the step is given, a `PrescribedValue` if it is right.
 
     Raises:
-        InputError: Neither a course nor a finite number in range.
+        InputError: Neither a load curve nor a finite number in range.
 
     Example:
         >>> check_prescribed("much")
@@ -282,30 +282,30 @@ def check_prescribed(given: Any) -> None:
     value: Any = history_of(given).value
     if not is_number(value) or not math.isfinite(value):
         raise InputError(f"{given!r} given, needs a finite number")
-    if not isinstance(given, Course) and out_of_range(value):
+    if not isinstance(given, LoadCurve) and out_of_range(value):
         raise InputError(f"{given!r} given, must be 0, or {RANGE}")
 
 
 @typed
-def courses_of(path: Path) -> dict[str, Course]:
+def load_curves(path: Path) -> dict[str, LoadCurve]:
     """A path as what a step takes for the components of a displacement, motion or anchor.
 
     Args:
         path: The path.
 
     Returns:
-        A course for each axis of the path, from where it is.
+        A load curve for each axis of the path, from where it is.
 
     Example:
         >>> from anisocontact.base.paths import make_path
-        >>> circle = courses_of(make_path("circle", radius=2.0))
+        >>> circle = load_curves(make_path("circle", radius=2.0))
         >>> round(circle["x"].at(0.5, 1.0, 7.0), 12)
         3.0
     """
-    return {axis: Course(way, relative=True) for axis, way in path.components().items()}
+    return {axis: LoadCurve(way, relative=True) for axis, way in path.components().items()}
 
 
-def way_cut_off(courses: Sequence[Course], duration: float, increments: int) -> float:
+def way_cut_off(courses: Sequence[LoadCurve], duration: float, increments: int) -> float:
     """Share of the way along several axes that straight increments cut off, 0 to 1.
 
     Args:
@@ -315,7 +315,7 @@ def way_cut_off(courses: Sequence[Course], duration: float, increments: int) -> 
 
     Example:
         >>> from anisocontact.base.paths import make_path
-        >>> circle = courses_of(make_path("circle", radius=2.0)).values()
+        >>> circle = load_curves(make_path("circle", radius=2.0)).values()
         >>> round(way_cut_off(list(circle), 1.0, 4), 2)  # 1 - 4 sqrt(2) / (2 pi)
         0.1
     """

@@ -21,8 +21,9 @@ class Limits:
     """Bounds of the load increments, as shares of the increments that a step asks for.
 
     Attributes:
-        smallest: A part that failed is not cut below this, > 0.
-        largest: Largest part, at most 1: the end of every increment of a step is met exactly.
+        smallest: A sub-increment that failed is not cut below this, > 0.
+        largest: Largest sub-increment, at most 1: the end of every increment of a step is met
+            exactly.
         cuts: Largest number of cuts within one increment, >= 0.
 
     Raises:

@@ -1,7 +1,10 @@
 """Materials of the bodies and the forces inside them."""
 
+from typing import Any
+
+from anisocontact.base.renamed import renamed
 from anisocontact.bulk.at_points import AtPoints
-from anisocontact.bulk.expansion import Expanding, Heated, bare
+from anisocontact.bulk.expansion import Heated, ThermalExpansion, without_expansion
 from anisocontact.bulk.history import Before, BodyHistory, HistoryMaterial
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
@@ -44,7 +47,6 @@ __all__ = [
     "BodyHistory",
     "BodyPoints",
     "ElasticVolume",
-    "Expanding",
     "Heated",
     "Hill",
     "HistoryMaterial",
@@ -63,6 +65,7 @@ __all__ = [
     "PointResult",
     "PointState",
     "StVenantKirchhoff",
+    "ThermalExpansion",
     "TransverselyIsotropic",
     "UserEnergy",
     "UserLaw",
@@ -70,7 +73,6 @@ __all__ = [
     "Viscoelastic",
     "Volume",
     "Yeoh",
-    "bare",
     "cauchy_stress",
     "cell_size",
     "deformation_gradient",
@@ -82,4 +84,9 @@ __all__ = [
     "small_strain",
     "to_mandel",
     "user_material",
+    "without_expansion",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    return renamed(__name__, name)

@@ -20,7 +20,7 @@ from anisocontact.mesh import Idealisation, Model
 
 
 @typed
-class Expanding:
+class ThermalExpansion:
     """A material that expands with the temperature of its body; see `Step.temperature`.
 
     Args:
@@ -35,7 +35,7 @@ class Expanding:
 
     Example:
         >>> from anisocontact.bulk import make_material
-        >>> Expanding(make_material("linear-elastic", E=210e3, nu=0.3), 1.2e-5).young
+        >>> ThermalExpansion(make_material("linear-elastic", E=210e3, nu=0.3), 1.2e-5).young
         210000.0
     """
 
@@ -54,7 +54,7 @@ class Expanding:
         self.young, self.small_strain = material.young, small_strain(material)
 
 
-def bare(material: Material) -> Any:
+def without_expansion(material: Material) -> Any:
     """A material without its expansion.
 
     Args:
@@ -66,10 +66,10 @@ def bare(material: Material) -> Any:
     Example:
         >>> from anisocontact.bulk import make_material
         >>> steel = make_material("linear-elastic", E=210e3, nu=0.3)
-        >>> bare(Expanding(steel, 1.2e-5)) is steel
+        >>> without_expansion(ThermalExpansion(steel, 1.2e-5)) is steel
         True
     """
-    return material.material if isinstance(material, Expanding) else material
+    return material.material if isinstance(material, ThermalExpansion) else material
 
 
 class Heated(Idealisation):
@@ -83,7 +83,7 @@ class Heated(Idealisation):
         stretch: What it has at its temperature without stress where strain is finite, UFL; else 1.
     """
 
-    def __init__(self, law: Expanding, model: Model) -> None:
+    def __init__(self, law: ThermalExpansion, model: Model) -> None:
         self._ideal = model.idealisation
         self._small = law.small_strain
         self._temperature: Any = fem.Constant(model.mesh, 0.0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from anisocontact.bulk.expansion import bare
+from anisocontact.bulk.expansion import without_expansion
 from anisocontact.bulk.materials import small_strain
 from anisocontact.mesh import Model, PlaneStress
 
@@ -50,7 +50,7 @@ def locking_bodies(model: Model, materials: Mapping[str, Any]) -> list[str]:
         f"body {body!r}: at nu = {material.nu:g} corrections at finite strain change volumes, "
         "which is that stiff, and many of them are needed; take neo-hookean-incompressible or "
         "another rubber"
-        for body, material in ((body, bare(one)) for body, one in materials.items())
+        for body, material in ((body, without_expansion(one)) for body, one in materials.items())
         if not (model.order == 1 or body in model.linear)
         and getattr(material, "nu", 0.0) >= STEEP
         and not (small_strain(material) or hasattr(material, "volume"))
@@ -58,7 +58,7 @@ def locking_bodies(model: Model, materials: Mapping[str, Any]) -> list[str]:
     return steep + [
         f"body {body!r}: at nu = {material.nu:g} its cells of order 1 lock, and forces are too "
         f"large, by some per cent at 0.48 and by half and more at 0.499; {cure}"
-        for body, material in ((body, bare(one)) for body, one in materials.items())
+        for body, material in ((body, without_expansion(one)) for body, one in materials.items())
         if (model.order == 1 or body in model.linear)
         and getattr(material, "nu", 0.0) >= NEARLY
         and (simplex or not hasattr(material, "volume"))

@@ -15,7 +15,7 @@ from anisocontact.base.fenicsx import Mat, Vec, assemble_force, create_force, fe
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
-from anisocontact.bulk.expansion import Expanding, Heated, bare
+from anisocontact.bulk.expansion import Heated, ThermalExpansion, without_expansion
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
@@ -45,8 +45,10 @@ class NonlinearBulk:
         self._dt: Any = fem.Constant(model.mesh, 0.0)
         # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
         full = 2 * model.order
-        given: Mapping[str, Any] = {name: bare(law) for name, law in materials.items()}
-        heating = {name: law for name, law in materials.items() if isinstance(law, Expanding)}
+        given: Mapping[str, Any] = {name: without_expansion(law) for name, law in materials.items()}
+        heating = {
+            name: law for name, law in materials.items() if isinstance(law, ThermalExpansion)
+        }
         self.heated = {name: Heated(law, model) for name, law in heating.items()}
         dx = body_measure(model)
         self._pressures = CellPressures(model, given, self._u, dx, self.heated)

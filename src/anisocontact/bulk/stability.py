@@ -14,7 +14,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.bulk.expansion import bare
+from anisocontact.bulk.expansion import without_expansion
 
 #: Stretches that are looked at lie within this factor of 1.
 MOST = 4.0
@@ -73,7 +73,7 @@ def unstable_rubbers(materials: Mapping[str, Any]) -> list[str]:
     """
     said = []
     for body, material in materials.items():
-        rubber = bare(material)
+        rubber = without_expansion(material)
         if not isinstance(rubber, Rubber):
             continue
         ranges = {path: stable_range(rubber, path) for path in _PATHS}

@@ -184,7 +184,7 @@ def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
             text = "given without the stiffness of the layer, normal.penalty"
             yield InputError(text, field=f"{place}.physical_penalty")
         if contact.method == AUGMENTED or contact.asks_for_multipliers:
-            text = f'given with method "{AUGMENTED}", under which no layer gives way'
+            text = f'given with method "{AUGMENTED}", which has no compliance'
             yield InputError(text, field=f"{place}.physical_penalty")
     if contact.method == PENALTY:
         if contact.tolerance is not None:

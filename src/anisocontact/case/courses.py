@@ -1,4 +1,4 @@
-"""Prescribed values: numbers and courses from the values, amplitudes and paths of a case file."""
+"""Prescribed values: numbers and load curves of values, amplitudes and paths of a case file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact.base.amplitudes import Amplitude, make_amplitude
-from anisocontact.base.course import Course, courses_of
+from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.paths import make_path
 from anisocontact.case.amplitudes import FunctionTable, Scheduled
@@ -41,7 +41,7 @@ class CaseCourses:
             for name, table in case.amplitude.items()
         }
         self._paths = {
-            name: courses_of(_path(table, f"path.{name}")) for name, table in case.path.items()
+            name: load_curves(_path(table, f"path.{name}")) for name, table in case.path.items()
         }
 
     def amplitude(self, name: str, begun: float) -> Amplitude:
@@ -50,7 +50,7 @@ class CaseCourses:
         return (lambda time: found(begun + time)) if self._of_run[name] else found
 
     def values(self, given: Mapping[str, Any], path: str | None, begun: float) -> dict[str, Any]:
-        """What a step takes: numbers, courses, None where free.
+        """What a step takes: numbers, load curves, None where free.
 
         Args:
             given: Values as they are in the case file, by component.
@@ -64,7 +64,7 @@ class CaseCourses:
         """One of the values."""
         if isinstance(given, Scheduled):
             amplitude = self.amplitude(given.amplitude, begun)
-            return Course(amplitude, given.value, given.relative)
+            return LoadCurve(amplitude, given.value, given.relative)
         return None if given == FREE else given
 
 

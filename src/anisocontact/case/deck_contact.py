@@ -145,7 +145,7 @@ class DeckContacts:
             self._penalty[self._interaction] = float(card.numbers()[0])
         elif kind in ("EXPONENTIAL", "TABULAR"):
             text = f"PRESSURE-OVERCLOSURE={kind}: contact is exact here, nothing overlaps; a "
-            raise InputError(text + "layer that gives way is a normal penalty")
+            raise InputError(text + "compliant layer is a normal penalty")
 
     def read_pair(self, card: Card) -> None:
         """Take `*CONTACT PAIR`."""

@@ -150,15 +150,15 @@ class Turning(Rotate):
     The axis may move.
     """
 
-    move: Annotated[Point, number("vector", "length", "way of the axis along the step")] = (
+    move: Annotated[Point, number("vector", "length", "translation of the axis along the step")] = (
         0.0,
         0.0,
         0.0,
     )
     amplitude: str | None = Field(
         None,
-        description="name of an amplitude that begins at 0: angle and way times it; linear along "
-        "the step if left out",
+        description="name of an amplitude that begins at 0: angle and translation times it; linear "
+        "along the step if left out",
     )
 
 

@@ -38,13 +38,13 @@ def material_of(
     Raises:
         InputError: What the table says is wrong, or the file, or what is in it.
     """
-    from anisocontact.bulk import Expanding
+    from anisocontact.bulk import ThermalExpansion
 
     if isinstance(section, MaterialTable):
         made = _own(section, resolve, place, execute)
     else:
         made = objects.material(section, place)
-    return Expanding(made, section.expansion) if section.expansion else made
+    return ThermalExpansion(made, section.expansion) if section.expansion else made
 
 
 def _own(

@@ -91,14 +91,16 @@ class Solver(Section):
         _number(
             "scalar",
             "1",
-            "an increment that fails is cut into parts, this share of it the smallest",
+            "an increment that fails is cut into sub-increments, this share of it the smallest",
             "positive",
             most=1.0,
         ),
     ] = Limits.smallest
     largest_increment: Annotated[
         float,
-        _number("scalar", "1", "largest part, a share of an increment", "positive", most=1.0),
+        _number(
+            "scalar", "1", "largest sub-increment, a share of an increment", "positive", most=1.0
+        ),
     ] = Limits.largest
     stabilisation: Annotated[
         bool,

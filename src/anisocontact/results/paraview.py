@@ -13,7 +13,7 @@ import scipy
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.compiled_forms import compiled_expression
 from anisocontact.base.fenicsx import dolfinx, fem, scalar_element, ufl
-from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
+from anisocontact.bulk import PLASTIC_STRAIN, cauchy_stress, without_expansion
 from anisocontact.bulk.cell_energy import volumes
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons, vertices
@@ -206,7 +206,9 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     ideal, u = problem.bulk.heated.get(body, problem.model.idealisation), problem.u
     pressure = problem.bulk.pressures.get(body)
-    stress = ideal.at_nodes(cauchy_stress(bare(problem.materials[body]), u, pressure), u)
+    stress = ideal.at_nodes(
+        cauchy_stress(without_expansion(problem.materials[body]), u, pressure), u
+    )
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)

@@ -226,7 +226,7 @@ _TABLE = {
                 "energy_density",
                 "stress",
                 "elastic energy per volume before deformation, mean of the cell; NaN where a "
-                "material tells no energy; only if `quantities` names it",
+                "material defines no energy; only if `quantities` names it",
                 lambda b: b.energy_density,
             ),
         ),
@@ -299,13 +299,13 @@ _TABLE = {
                 "max_turn",
                 "radian",
                 "the largest angle by which normal, axes of adhesion or slave turned at a point in "
-                "contact along the last part of an increment",
+                "contact along the last sub-increment",
                 lambda c: c.contact.extreme(c.state["turn"]),
             ),
             (
                 "turn",
                 "radian",
-                "the same where friction acts, by which parts of increments are cut: the cubic "
+                "the same where friction acts, by which sub-increments are cut back: the cubic "
                 "mean over the points, weighted with their tangential forces",
                 lambda c: c.contact.turn(),
             ),

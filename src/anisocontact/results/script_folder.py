@@ -43,7 +43,7 @@ def recorded(
         overwrite: Whether an earlier run in the folder is replaced.
 
     Returns:
-        Every accepted increment, or part of one; the problem holds its state until the next. A
+        Every accepted increment or sub-increment; the problem holds its state until the next. A
         run that the script leaves before its end is "stopped".
 
     Raises:

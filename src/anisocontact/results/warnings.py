@@ -153,13 +153,14 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
         )
     if relaxed := summary.get("relaxed"):
         found.append(
-            f"penalties held in {len(relaxed)} increments or parts, from time {relaxed[0]:.4g} on, "
-            "as multipliers did not converge: bodies overlap there by the penetrations of contacts"
+            f"penalties held in {len(relaxed)} increments or sub-increments, from time "
+            f"{relaxed[0]:.4g} on, as multipliers did not converge: bodies overlap there by "
+            "the penetrations of contacts"
         )
     if unbalanced := summary.get("unbalanced"):
         found.append(
-            f"forces are out of balance in {len(unbalanced)} increments or parts, from time "
-            f"{unbalanced[0]:.4g} on: the options snes_rtol and snes_atol let them be"
+            f"forces are out of balance in {len(unbalanced)} increments or sub-increments, from "
+            f"time {unbalanced[0]:.4g} on: the options snes_rtol and snes_atol let them be"
         )
     return found
 
@@ -202,7 +203,7 @@ def at_end(
         if entry["worst_turn"] > TURNED:
             found.append(
                 f"{_pair(entry)}: normal, axes of adhesion or slave turned by "
-                f"{math.degrees(entry['worst_turn']):.0f} degrees in one part of an increment, at "
+                f"{math.degrees(entry['worst_turn']):.0f} degrees in one sub-increment, at "
                 f"time {entry['worst_turn_time']:.4g}; friction follows up to "
                 f"{math.degrees(FOLLOWED):.0f} well: more increments or cuts make it smaller, a "
                 "finer or smooth master where its facets meet at such angles"
@@ -286,8 +287,8 @@ def _cure(contact: Contact, stiffer: str) -> str:
 _TAKEN = {
     "stabilisation": "stabilisation took up {} of the work from outside: bodies moved while "
     "nothing held them; let them touch at the start, or support them",
-    "flow": "jumps released {} of the work from outside: inertia, which is left out, would "
-    "decide where the bodies come to rest",
+    "regularisation": "jumps released {} of the work from outside: inertia, which is left out, "
+    "would decide where the bodies come to rest",
 }
 
 

@@ -1,14 +1,17 @@
 """Newton's method, load steps and what a run reports."""
 
+from typing import Any
+
 from anisocontact.base.amplitudes import (
     Amplitude,
     amplitudes,
     make_amplitude,
     register_amplitude,
 )
-from anisocontact.base.course import Course, courses_of
+from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.limits import Limits
 from anisocontact.base.paths import Path, make_path, paths, register_path
+from anisocontact.base.renamed import renamed
 from anisocontact.base.until import Until
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.script import ContactProblem
@@ -31,13 +34,13 @@ __all__ = [
     "Amplitude",
     "ContactProblem",
     "CoupledFace",
-    "Course",
     "Culprit",
     "Cut",
     "CyclicSymmetry",
     "Cylindrical",
     "ElasticSupport",
     "Limits",
+    "LoadCurve",
     "Newton",
     "Path",
     "Problem",
@@ -52,7 +55,7 @@ __all__ = [
     "Turn",
     "Until",
     "amplitudes",
-    "courses_of",
+    "load_curves",
     "make_amplitude",
     "make_path",
     "paths",
@@ -60,3 +63,7 @@ __all__ = [
     "register_path",
     "register_strategy",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    return renamed(__name__, name)

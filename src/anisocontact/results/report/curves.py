@@ -75,7 +75,7 @@ def moment(run: RunData) -> Figure:
         name = f"on {plain(body)} about {axis_name(axis)}"
         axes.plot(at, about, color=colour, label=name)
     axes.set_ylabel("moment of contacts and faces [force length]")
-    axes.set_xlabel(f"angle that {plain(farthest)} has turned [rad]")
+    axes.set_xlabel(f"rotation angle of {plain(farthest)} [rad]")
     axes.legend(loc="best")
     _shade(run, axes, at)
     axes.margins(x=0.0)

@@ -159,7 +159,7 @@ class ContactView:
     def names(self) -> tuple[str, str]:
         """What the two coordinates of positions are called."""
         first, second = self.frame.names()
-        return ("way along the slave", "across") if self._folds else (first, second)
+        return ("arc length along the slave", "across") if self._folds else (first, second)
 
     def mean_axes(self, law: str) -> Floats | None:
         """Axes of "adhesion" or "friction" in the frame, (2, 2); None where they vary."""

@@ -126,8 +126,8 @@ class RunData:
         moves |= {body: f"rigid.{body}.translation" for body in rigid}
         turns = {body: f"rigid.{body}.turn" for body in rigid}
         for text, columns in (
-            ("distance that {} has moved [length]", moves),
-            ("angle that {} has turned [rad]", turns),
+            ("distance travelled by {} [length]", moves),
+            ("rotation angle of {} [rad]", turns),
         ):
             paths = {name: self._path(column) for name, column in columns.items()}
             longest = max(paths, key=lambda name: paths[name][-1], default=None)

@@ -23,7 +23,7 @@ STRAYED = 1e-3
 
 
 #: Why states with such cells are refused.
-INVERTED = "cells are turned inside out"
+INVERTED = "cells are inverted (det F <= 0)"
 
 
 @dataclass(frozen=True)

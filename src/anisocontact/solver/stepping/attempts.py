@@ -124,7 +124,7 @@ class Attempts:
     both fail, see `GradedPenalties`, and from then on where the first does. Where the status of
     points alternated, a further one takes a share of each correction: half as much as before where
     it still alternates, twice as much where it does not. Where that does not help either and the
-    part is small, the last one lets the bodies flow, see `ViscousFlow`. Where a part is tiny, both
+    part is small, the last one regularises, see `ViscousRegularisation`. Where a part is tiny, both
     are tried whatever was in the way. Where multipliers are not required and a cut did not lead to
     them, penalties come before these last ones. Where contact may hold free bodies without springs,
     an attempt without them comes before all these. Multipliers that follow every correction have

@@ -31,7 +31,7 @@ def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> lis
 
     Returns:
         Over all ranks, the same on each: points without answer of their law, else inverted cells,
-        else points whose status alternates, else points that hop between facets, else the node
+        else points whose status alternates, else points whose facet alternates, else the node
         that is farthest from equilibrium.
     """
     kinds = (

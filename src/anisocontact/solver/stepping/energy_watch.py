@@ -17,6 +17,7 @@ from anisocontact.interface import STATUS
 from anisocontact.solver.system.contact_work import BELIEVED
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.system.reported import Energies
 
 #: Share of points that begin or end contact or sliding in an increment beyond which they make the
 #: residual.
@@ -46,7 +47,7 @@ class EnergyWatch:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._work = self._external = self._residual = self._flow = 0.0
+        self._work = self._external = self._residual = self._regularisation = 0.0
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(CAUSES))
         self._begun = self._overlap = self.pushed_apart = False
@@ -62,18 +63,20 @@ class EnergyWatch:
         self._counts = self._counted()
         self._overlap = any([initial_overlap(c, c.facet_size) for c in self._problem.contacts])
 
-    def accepted(self) -> dict[str, float]:
+    def accepted(self) -> Energies:
         """Energies of an accepted increment, with what a jump in it has set free.
 
-        Where bodies have flowed that is what the increment has left open, unless forces of supports
-        and loads between those of both of its ends can explain it.
+        Where a jump was regularised that is what the increment has left open, unless forces of
+        supports and loads between those of both of its ends can explain it.
         """
         energies, flowed = self._problem.energies(), self._problem.flowed
         lost = energies["residual"] - self._residual
         if flowed is None or not lost > BELIEVED * flowed.missed:
             return energies
         self._problem.stabilisation.released += lost
-        return energies | {"flow": energies["flow"] + lost, "residual": self._residual}
+        energies["regularisation"] += lost
+        energies["residual"] = self._residual
+        return energies
 
     def after(self, energies: Mapping[str, float], ran_off: bool) -> Imbalance:
         """The balance after an accepted increment.
@@ -82,10 +85,10 @@ class EnergyWatch:
             energies: See `Problem.energies`.
             ran_off: Whether slave points left the end of a master in it.
         """
-        before = self._residual, self._external, self._flow
+        before = self._residual, self._external, self._regularisation
         self._take(energies)
         self._work += abs(self._external - before[1])
-        signs = (ran_off, self._flow != before[2], *self._changed(), True)
+        signs = (ran_off, self._regularisation != before[2], *self._changed(), True)
         cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
         self._parts[cause] += self._residual - before[0]
         self.pushed_apart, self._overlap = self._overlap, False
@@ -94,19 +97,21 @@ class EnergyWatch:
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""
-        now = [float(self._begun), self._work, self._external, self._residual, self._flow]
+        now = [float(self._begun), self._work, self._external, self._residual, self._regularisation]
         return np.concatenate([now, self._parts, self._counts.reshape(-1)])
 
     def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
-        begun, self._work, self._external, self._residual, self._flow = map(float, kept[:5])
+        begun, self._work, self._external, self._residual, self._regularisation = map(
+            float, kept[:5]
+        )
         self._begun = bool(begun)
         self._parts, counted = np.split(kept[5:], [len(CAUSES)])
         self._counts = counted.astype(np.int64).reshape(self._counts.shape)
 
     def _take(self, energies: Mapping[str, float]) -> None:
         self._external, self._residual = energies["external"], energies["residual"]
-        self._flow = energies["flow"]
+        self._regularisation = energies["regularisation"]
 
     def _share(self, energies: Mapping[str, float]) -> float:
         residual = abs(self._residual)

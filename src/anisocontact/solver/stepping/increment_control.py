@@ -1,4 +1,4 @@
-"""How large the next part of an increment is: cut after a failure, grown after success."""
+"""How large the next sub-increment is: cut back after a failure, grown after success."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HARD = 15
 
 @dataclass
 class IncrementControl:
-    """Goes through the increments of a step in parts; all sizes are shares of an increment.
+    """Goes through the increments of a step in sub-increments, whose sizes are shares of one.
 
     Args:
         limits: Bounds of the parts.

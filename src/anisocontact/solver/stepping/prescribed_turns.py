@@ -70,7 +70,7 @@ def _angles(
         supports.begin(step, u)
         held = supports.unknowns
         own = {name: np.isin(held // 3, nodes[name]) for name in linear}
-        places = _PLACES if step.turned_groups() or step.courses() else 1
+        places = _PLACES if step.turned_groups() or step.load_curves() else 1
         for share in np.arange(1, places + 1) / places:
             supports.set_load_factor(float(share))
             u[held] = supports.values

@@ -43,13 +43,13 @@ class Progress:
 
 @dataclass(frozen=True, eq=False)
 class Accepted:
-    """An increment, or a part of one, that converged.
+    """An increment, or a sub-increment of it, that converged.
 
     Attributes:
         step: Name of the step.
         step_index: Number of the step, from 0.
         increment: Number of the increment in the step, from 1.
-        done: Share of that increment that is done: below 1 where it was cut into parts.
+        done: Share of that increment that is done: below 1 where it was cut into sub-increments.
         time: Time that is reached.
         iterations: Newton iterations, with those of attempts that failed.
         residuals: Residual (out-of-balance force) over the forces at work, of the start and after
@@ -114,7 +114,7 @@ class Accepted:
 
 @dataclass(frozen=True)
 class Cut:
-    """A cutback: an increment, or a part of one, that failed and is tried again in smaller parts.
+    """A cut-back: an increment that failed and is tried again in smaller sub-increments.
 
     Attributes:
         step: Name of the step.

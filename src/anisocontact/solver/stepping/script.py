@@ -210,7 +210,7 @@ class ContactProblem(Uncopied):
         limits: Limits = LIMITS,
         callback: Callable[[float, int], object] | None = None,
     ) -> int:
-        """Go along a step in increments; one that fails is cut into parts, which grow again.
+        """Go along a step in increments; one that fails is cut into sub-increments.
 
         Args:
             prescribe: Sets conditions, loads and rigid bodies for a share of the step, 0 to 1.

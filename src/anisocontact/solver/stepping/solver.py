@@ -52,7 +52,7 @@ from anisocontact.solver.terms.step import Step
 class Solver(Uncopied):
     """Runs the steps of a problem.
 
-    An increment that does not converge is cut into parts, and the parts grow again where they
+    An increment that does not converge is cut into sub-increments, which grow again where they
     converge; the end of every increment that a step asks for is met exactly.
 
     Args:
@@ -143,7 +143,7 @@ class Solver(Uncopied):
                 `on_note` if not given, and is a `RunWarning` if that is not given either.
 
         Yields:
-            Every accepted increment, or part of one; the problem holds its state until the next.
+            Every accepted increment or sub-increment; the problem holds its state until the next.
 
         Raises:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
@@ -337,14 +337,14 @@ class Solver(Uncopied):
             return attempts.solve(first, last, ratio, control, overloads)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
-        """Make the next part smaller, or give up."""
+        """Make the next sub-increment smaller, or give up."""
         control, result = self.place.control, outcome.result
         tried, cuts = control.part, control.cuts
         if result.culprits:
             self.place.lost = outcome
         final = outcome.final or self._failures.hopeless(step, self.place, cuts)
         if final or not control.cut():
-            last = f"{cuts} cuts, the last part was {tried:.2g}" if cuts else ""
+            last = f"{cuts} cuts, the last sub-increment was {tried:.2g}" if cuts else ""
             raise self._failures.stopped(step, self.place, outcome, last)
         more = self._failures.hint(step, self.place, cuts)
         if self._on_cut is not None:

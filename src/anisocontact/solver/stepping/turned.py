@@ -1,4 +1,4 @@
-"""How far points in contact turn along one part of an increment, and what that allows.
+"""How far points in contact turn along one sub-increment, and what that allows.
 
 A step follows the path of a point to second order in the angle by which normal, axes of adhesion or
 the slave turn along it, see `FOLLOWED`. It is the tangential force of a contact that has to be
@@ -68,9 +68,10 @@ def half_turns(prescribed: float, smallest: float) -> str:
     if part < math.pi * (1.0 - 1e-9):
         return ""
     return (
-        f"{math.degrees(part):.0f} degrees of rotation are prescribed in the smallest part that is "
-        f"allowed, {smallest:g} of the increment: from 180 on nobody can tell which way it turns; "
-        "take more increments, or let parts be smaller (smallest_increment)"
+        f"{math.degrees(part):.0f} degrees of rotation are prescribed in the smallest "
+        f"sub-increment that is allowed, {smallest:g} of the increment: from 180 on nobody can "
+        "tell which way it turns; "
+        "take more increments, or let sub-increments be smaller (smallest_increment)"
     )
 
 

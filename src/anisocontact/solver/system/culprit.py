@@ -11,8 +11,8 @@ class Culprit:
 
     Attributes:
         kind: "law" (a slave point without answer), "flipping" (a slave point whose status
-            alternates), "hopping" (one that hops between facets), "inverted" (a cell turned inside
-            out), "behind" (a body behind its master) or "residual" (the node that is farthest from
+            alternates), "hopping" (one whose facet alternates), "inverted" (an inverted cell),
+            "behind" (a body behind its master) or "residual" (the node that is farthest from
             equilibrium).
         position: Where it is, (x, y, z), length.
         why: What is wrong with it.
@@ -54,7 +54,7 @@ class LostError(RuntimeError):
 
     def __init__(self, culprit: Culprit) -> None:
         super().__init__(
-            f"contact {culprit.contact!r}: equilibrium is lost, and the bodies flow until "
-            f"{culprit.why}"
+            f"contact {culprit.contact!r}: equilibrium is lost, and viscous regularisation goes "
+            f"on until {culprit.why}"
         )
         self.culprit = culprit

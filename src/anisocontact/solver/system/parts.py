@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, bare, small_strain
+from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, small_strain, without_expansion
 from anisocontact.contact import Contact
 from anisocontact.contact.given_twice import check_given_once
 from anisocontact.contact.shared_nodes import mark_shared
@@ -239,4 +239,4 @@ def _check(
                 f"contact {contact.name!r}",
             )
     for name, material in materials.items():
-        model.idealisation.check_material(bare(material), f"material.{name}")
+        model.idealisation.check_material(without_expansion(material), f"material.{name}")

@@ -72,7 +72,7 @@ class Problem(ComposedSystem, Uncopied):
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
         begun: How many steps have begun.
-        flowed: Work of the last accepted increment if bodies flowed in it.
+        flowed: Work of the last accepted increment if viscous regularisation led to it.
         evaluation: Forces at the state of the last evaluation.
 
     Raises:

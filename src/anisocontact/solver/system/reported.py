@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 from anisocontact.base.array_types import Floats
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -14,7 +16,30 @@ from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.guides import Guides
 
 #: Energies that every run reports, in this order.
-ENERGIES = ("elastic", "adhesion", "normal", "friction", "viscous", "stabilisation", "flow")
+ENERGIES = (
+    "elastic",
+    "adhesion",
+    "normal",
+    "friction",
+    "viscous",
+    "stabilisation",
+    "regularisation",
+)
+
+
+class Energies(dict[str, float]):
+    """Energies by their names; "flow", as "regularisation" was called before, finds it, too.
+
+    Example:
+        >>> Energies(elastic=2.0, regularisation=0.5)["regularisation"]
+        0.5
+    """
+
+    def __missing__(self, name: str) -> float:
+        if name != "flow":
+            raise KeyError(name)
+        warnings.warn('"flow" is now "regularisation"', DeprecationWarning, stacklevel=2)
+        return self["regularisation"]
 
 
 class ReportedSystem(AssembledSystem):
@@ -80,19 +105,19 @@ class ReportedSystem(AssembledSystem):
         """
         return self.reduction.mean(group, weights)
 
-    def energies(self) -> dict[str, float]:
+    def energies(self) -> Energies:
         """Energies of the accepted state, force times length.
 
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
-            the "flow" to the next equilibrium has dissipated and, where there are any, energy of
-            "springs" and elastic supports, what materials have dissipated, "inelastic", and
-            "residual", what is left of "external" less all others: the error of the increments.
+            "friction" and "viscous" laws, energy of "stabilisation", what the viscous
+            "regularisation" has dissipated on jumps and, where there are any, energy of "springs"
+            and elastic supports, what materials have dissipated, "inelastic", and "residual", what
+            is left of "external" less all others: the error of the increments.
         """
         stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
         stored |= self.assembly.bodies.dissipated()
         stored |= self.assembly.acting.energies(self._bodies.nodal)
         work = self._accepted.work
-        return {"external": work} | stored | {"residual": work - sum(stored.values())}
+        return Energies(external=work, **stored, residual=work - sum(stored.values()))

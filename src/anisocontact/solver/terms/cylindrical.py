@@ -29,7 +29,7 @@ class Cylindrical:
 
     Args:
         values: Component "radial", "tangential" or "axial" -> displacement at the end of a step,
-            length, a `Course`, or None, which frees it. What is not named is as it was.
+            length, a `LoadCurve`, or None, which frees it. What is not named is as it was.
         axis: Direction of the axis, of any length but zero.
         point: A point of the axis, length.
 

@@ -19,11 +19,11 @@ class PrescribedComponents:
         end: Values at its end, (size,).
 
     Example:
-        >>> from anisocontact.base.course import Course
+        >>> from anisocontact.base.course import LoadCurve
         >>> force = PrescribedComponents(2)
         >>> force.begin(1.0)
         >>> force.prescribe(0, 4.0)
-        >>> force.prescribe(1, Course(lambda t: t**2))
+        >>> force.prescribe(1, LoadCurve(lambda t: t**2))
         >>> force.at(0.5).tolist(), force.end.tolist()
         ([2.0, 0.25], [4.0, 1.0])
     """

@@ -32,7 +32,7 @@ from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 from anisocontact.solver.terms.trust import Trust
 from anisocontact.solver.terms.unsupported_bodies import UnsupportedBodies
-from anisocontact.solver.terms.viscous_flow import ViscousFlow
+from anisocontact.solver.terms.viscous_regularisation import ViscousRegularisation
 
 #: Force of the springs over the forces at work that an accepted state may have.
 SHARE = 1e-7
@@ -87,7 +87,7 @@ class Stabilisation(Term):
         self.landed = False
         self.trust = Trust()
         self.notes: list[str] = []
-        self.flow = ViscousFlow(model, scale)
+        self.flow = ViscousRegularisation(model, scale)
         self._scale = scale
         self._comm, self._contacts = model.mesh.comm, contacts
         self._motion = BodyMotion(contacts, attached, self._comm)
@@ -362,13 +362,13 @@ class Stabilisation(Term):
         self.landed = self._work.fell
         if self.flow.flows:
             steps = self.flow.steps
-            self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
+            self.notes.append(f"equilibrium was lost: {steps} steps of viscous regularisation")
             self.flow.stop()
         return 0.0
 
     @override
     def energies(self, u: Floats) -> dict[str, float]:
-        return {"stabilisation": self.energy, "flow": self.released}
+        return {"stabilisation": self.energy, "regularisation": self.released}
 
     @override
     def persistent(self) -> Arrays:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from anisocontact.base.course import (
-    Course,
+    LoadCurve,
     PrescribedValue,
     check_prescribed,
     history_of,
@@ -41,7 +41,7 @@ class Step:
     """A stretch of loading; every value goes linearly from where it is to the one given.
 
     What is not named keeps its value. A displacement of None releases the support: the force it
-    carried goes to zero along the step. A `Course` in the place of a number is followed instead.
+    carried goes to zero along the step. A `LoadCurve` in the place of a number is followed instead.
 
     Attributes:
         name: Name in progress and output.
@@ -136,9 +136,9 @@ class Step:
             plain: Mapping[str, PrescribedValue] = getattr(self, kind)
             yield from (((kind, name, ""), value) for name, value in plain.items())
 
-    def courses(self) -> dict[Place, Course]:
+    def load_curves(self) -> dict[Place, LoadCurve]:
         """Those of the values that follow an amplitude."""
-        return {place: value for place, value in self.prescribed() if isinstance(value, Course)}
+        return {place: value for place, value in self.prescribed() if isinstance(value, LoadCurve)}
 
     def prescribed_groups(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
@@ -205,7 +205,7 @@ class Step:
 
 
 def check_courses(steps: Sequence[Step]) -> list[str]:
-    """Refuse courses that do not begin where the step before ends.
+    """Refuse load curves that do not begin where the step before ends.
 
     Args:
         steps: All steps of a run.
@@ -223,7 +223,7 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
         for name, turn in step.rotation.items():
             if turn.amplitude is not None:
                 with within(f"step {step.name!r}.rotation.{name}.amplitude"):
-                    Course(turn.amplitude).check_answers(step.duration)
+                    LoadCurve(turn.amplitude).check_answers(step.duration)
         known |= {place: None for place in known if place[1] in turned}
         for place, value in step.prescribed():
             name = ".".join(part for part in place if part)
@@ -249,7 +249,7 @@ def _followed(
     if value is None:
         return None, False
     history = history_of(value)
-    if isinstance(history, Course):
+    if isinstance(history, LoadCurve):
         history.check_answers(step.duration)
     after = history.end(before, step.duration)
     if after is None and place[0] == "load":
@@ -259,8 +259,8 @@ def _followed(
 
 def _shortened(step: Step) -> list[str]:
     """Warnings of paths whose corners and arcs the increments of a step cut off."""
-    along: dict[tuple[str, str], list[Course]] = {}
-    for (kind, name, axis), course in step.courses().items():
+    along: dict[tuple[str, str], list[LoadCurve]] = {}
+    for (kind, name, axis), course in step.load_curves().items():
         if axis in AXES and kind not in _FORCES:
             along.setdefault((kind, name), []).append(course)
     said = []

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import Course
+from anisocontact.base.course import LoadCurve
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import Rotation, check_vector
@@ -52,14 +52,14 @@ class Turn(Rotation):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_vector("move", self.move)
-        if self.amplitude is not None and (first := Course(self.amplitude).jump(0.0)):
+        if self.amplitude is not None and (first := LoadCurve(self.amplitude).jump(0.0)):
             raise InputError(f"it begins at {first:g}, must be 0", "amplitude")
 
     def share(self, fraction: float) -> float:
         """The share of it that is done at a fraction of the step."""
         if self.amplitude is None:
             return fraction
-        return float(Course(self.amplitude).at(fraction, self.duration, 0.0))
+        return float(LoadCurve(self.amplitude).at(fraction, self.duration, 0.0))
 
     @property
     def fastest(self) -> float:

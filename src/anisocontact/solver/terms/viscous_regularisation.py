@@ -1,4 +1,4 @@
-"""Equilibrium that is lost: the bodies flow on to the next one.
+"""Viscous regularisation: from where equilibrium is lost to the next one.
 
 At a limit point, such as an edge that digs in and lets go, the path of equilibria ends: no part of
 an increment is small enough, and points alternate between stick and slip. The bodies would jump.
@@ -38,7 +38,7 @@ SLOW = 0.1
 MOST_STEPS = 200
 
 
-class ViscousFlow(Term):
+class ViscousRegularisation(Term):
     """Viscous flow of all bodies from the accepted state to an equilibrium.
 
     Args:
@@ -58,7 +58,7 @@ class ViscousFlow(Term):
         self.stop()
 
     def stop(self) -> None:
-        """Nothing flows."""
+        """No viscous forces."""
         self.stiffness = self._last = self._speed = 0.0
         self.steps = self._corrections = self._waits = self._tried = 0
         self.flows = False
@@ -66,7 +66,7 @@ class ViscousFlow(Term):
         self._nodes = np.zeros(0, dtype=PETSc.IntType)
 
     def start(self, u: Floats, where: Flags | None = None) -> None:
-        """Let the bodies flow.
+        """Begin to add viscous forces.
 
         Args:
             u: State to start from, (nodes, 3), length.
@@ -101,7 +101,7 @@ class ViscousFlow(Term):
             at_work: Norm of the forces at work.
 
         Returns:
-            Whether the bodies still flow.
+            Whether there are viscous forces still.
 
         Raises:
             NotHeldError: They do not come to rest.
@@ -109,7 +109,9 @@ class ViscousFlow(Term):
         if not self.flows:
             return False
         if self.stiffness and self.steps == MOST_STEPS:
-            raise NotHeldError(f"the bodies do not come to rest in {MOST_STEPS} steps of flow")
+            raise NotHeldError(
+                f"the bodies do not come to rest in {MOST_STEPS} steps of viscous regularisation"
+            )
         speed, before = self._move(u), self._speed
         if not self.stiffness:
             return False

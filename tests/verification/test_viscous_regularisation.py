@@ -1,4 +1,4 @@
-"""Viscous flow to the next equilibrium."""
+"""Viscous regularisation to the next equilibrium."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Solver, Step, StoppedError
 from anisocontact.solver.stepping import attempts
 from anisocontact.solver.stepping.attempts import Attempts
-from anisocontact.solver.terms import viscous_flow
-from anisocontact.solver.terms.viscous_flow import ViscousFlow
+from anisocontact.solver.terms import viscous_regularisation
+from anisocontact.solver.terms.viscous_regularisation import ViscousRegularisation
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
@@ -25,8 +25,8 @@ STEPS = (Step("press", 1, PRESS), Step("drag", 2, DRAG))
 STRATEGIES = ["direct", "condensed", "iterative"]
 
 
-def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every attempt starts from the accepted state and flows."""
+def _always_regularised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every attempt starts from the accepted state, with viscous forces."""
 
     def ways(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
         return [replace(full, flowing=True)]
@@ -35,17 +35,15 @@ def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_flow_ends_where_newton_ends(
-    fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
-) -> None:
-    """Where there is one equilibrium only, a block that sticks and slips, flow finds it.
+def test_it_ends_where_newton_ends(fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str) -> None:
+    """Where there is one equilibrium only, a block that sticks and slips, it finds that.
 
-    Requirement: what is accepted is in balance without viscosity. Source: Newton's method without
-    flow. Tolerance: both leave 1e-8 of the forces out of balance.
+    Requirement: what is accepted is in balance without viscosity. Source: Newton's method
+    alone. Tolerance: both leave 1e-8 of the forces out of balance.
     """
     plain = fe.block(fe.interface(), cells=(3, 3, 2))
     wanted = list(Solver(plain.problem, STEPS, strategy="direct").run())
-    _always_flows(monkeypatch)
+    _always_regularised(monkeypatch)
     block = fe.block(fe.interface(), cells=(3, 3, 2))
     found = list(Solver(block.problem, STEPS, strategy=strategy).run())
     assert [a.done for a in found] == [1.0] * 3
@@ -59,16 +57,16 @@ def test_flow_ends_where_newton_ends(
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_a_flow_works_what_its_ends_say(
+def test_its_work_is_what_its_ends_say(
     fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
 ) -> None:
-    """Work from outside = what is stored, whatever the way of the flow.
+    """Work from outside = what is stored, whatever the path.
 
     Source: bodies, penalty and adhesion that sticks are linear, so that the trapezoidal rule is
     exact from one end of an increment to the other. Tolerance: 1e-8 of the forces are out of
     balance. What viscous forces took up on the way counted as the energy of a jump.
     """
-    _always_flows(monkeypatch)
+    _always_regularised(monkeypatch)
     block = fe.block(fe.interface(coefficients=(10.0, 10.0)), cells=(3, 3, 2), nu=0.0)
     steps = (STEPS[0], Step("drag", 2, {"block.top": {"x": 0.002, "y": 0.001}}))
     accepted = list(Solver(block.problem, steps, strategy=strategy).run())
@@ -76,13 +74,13 @@ def test_a_flow_works_what_its_ends_say(
     for one in accepted:
         assert one.contacts["block.bottom"]["stick"] == points
         energies = one.energies
-        assert energies["flow"] == 0.0
+        assert energies["regularisation"] == 0.0
         assert abs(energies["residual"]) < 1e-7 * energies["external"]
 
 
 def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """A line for every increment that flowed; nothing of it is left in the next attempt."""
-    _always_flows(monkeypatch)
+    _always_regularised(monkeypatch)
     block = fe.block(fe.interface(), cells=(2, 2, 1))
     springs = block.problem.stabilisation
     for _ in Solver(block.problem, STEPS[:1], strategy="direct").run():
@@ -122,10 +120,10 @@ def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPat
         assert tried == ways
 
 
-def _flow() -> tuple[ViscousFlow, np.ndarray]:
+def _flow() -> tuple[ViscousRegularisation, np.ndarray]:
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
     u = np.zeros((8, 3))
-    carried = ViscousFlow(model, 10.0)
+    carried = ViscousRegularisation(model, 10.0)
     carried.start(u)
     return carried, u
 
@@ -135,21 +133,23 @@ def test_steps_grow_and_shrink() -> None:
     carried, u = _flow()
     first = carried.stiffness
     assert carried.improve(u + 0.1, at_work=0.0)
-    assert carried.stiffness == viscous_flow.LONGER * first
+    assert carried.stiffness == viscous_regularisation.LONGER * first
     assert carried.force(u + 0.1) == pytest.approx(0.0)
     assert carried.soften()
-    assert carried.stiffness == viscous_flow.LONGER * viscous_flow.SHORTER * first
+    assert (
+        carried.stiffness == viscous_regularisation.LONGER * viscous_regularisation.SHORTER * first
+    )
     while carried.soften():
         pass
-    assert carried.stiffness > viscous_flow.MOST_VISCOUS * 10.0
+    assert carried.stiffness > viscous_regularisation.MOST_VISCOUS * 10.0
 
 
 def test_flow_without_end_is_given_up() -> None:
     """Bodies that never come to rest: no more than so many steps, then the attempt has failed."""
     carried, u = _flow()
-    for count in range(viscous_flow.MOST_STEPS):
+    for count in range(viscous_regularisation.MOST_STEPS):
         assert carried.improve(u + count, at_work=0.0)
     with pytest.raises(
-        NotHeldError, match=f"do not come to rest in {viscous_flow.MOST_STEPS} steps"
+        NotHeldError, match=f"do not come to rest in {viscous_regularisation.MOST_STEPS} steps"
     ):
         carried.improve(u, at_work=0.0)
