@@ -168,6 +168,23 @@ def test_a_small_contact_is_seen_alone(radius, shown):
     assert quiver.N > 12
 
 
+@pytest.mark.parametrize(("height", "rows"), [(0.1, 1), (0.3, 2)])
+def test_arrows_stand_in_the_middle_of_what_they_stand_for(height: float, rows: int) -> None:
+    """A strip of points, 1 long: its arrows are spread over its height.
+
+    Requirement: no arrow is cut by the border of the map, as those of a belt were, which stood on
+    its lower edge. Tolerance: the spacing of the points, 0.01.
+    """
+    x, y = np.meshgrid(
+        np.linspace(0.0, 1.0, 101), np.linspace(0.0, height, round(100 * height) + 1)
+    )
+    places = np.column_stack([x.ravel(), y.ravel()])
+    shown = places[maps._spread(places)]
+    middles = (np.arange(rows) + 0.5) / rows if rows == 1 else 0.5 + np.array([-0.5, 0.5]) / 1.8
+    assert np.allclose(np.unique(shown[:, 1]), height * middles, atol=0.01)
+    assert len(shown) == 6 * rows
+
+
 @pytest.mark.parametrize(("tilt", "name"), [(8.0, "z"), (20.0, "(0, 0.342, 0.94)")])
 def test_a_contact_that_is_nearly_level_is_seen_along_an_axis(tilt, name):
     up = np.tile([0.0, np.sin(np.radians(tilt)), np.cos(np.radians(tilt))], (10, 1))

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
 from anisocontact.base.statuses import STATUS
 from anisocontact.results.report.along import pressure_along, traction_along
@@ -36,6 +36,8 @@ ROOM = 1.5
 AROUND, FACETS = 0.3, 3.0
 #: Size of a close-up over that of the whole slave up to which it is shown alone.
 CLOSE = 0.6
+#: Squares along the longer side of what touches, with an arrow each.
+_SQUARES = 6.0
 _BOTH = np.array([-1.0, 1.0])
 
 
@@ -200,9 +202,18 @@ def _arrows(axes: Axes, view: ContactView, which: int) -> None:
     touching = np.flatnonzero(view.touching)
     if not touching.size:
         return
-    low, high = view.flat[touching].min(axis=0), view.flat[touching].max(axis=0)
-    cell = (high - low).max() / 6.0
-    _, some = np.unique(((view.flat[touching] - low) // (cell or 1.0)), axis=0, return_index=True)
-    at = touching[some]
+    at = touching[_spread(view.flat[touching])]
     arrow = view.frame.of(view.data[f"direction_friction_{which + 1}"][at])
     axes.quiver(*view.flat[at].T, *arrow.T, color="black", width=0.004, scale=16.0, pivot="mid")
+
+
+def _spread(places: Floats) -> Ints:
+    """Some places (n, 2), the one nearest to the middle of each of the squares that cover them."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    square = (high - low).max() / _SQUARES or 1.0
+    count = np.maximum(np.ceil((high - low) / square - 1e-9), 1.0)
+    first = 0.5 * (low + high - count * square)
+    within = np.clip((places - first) // square, 0.0, count - 1.0)
+    away = np.linalg.norm(places - first - (within + 0.5) * square, axis=1)
+    order = np.argsort(away, kind="stable")
+    return np.asarray(order[np.unique(within[order], axis=0, return_index=True)[1]])
