@@ -44,6 +44,19 @@ class HistoryMaterial(Protocol):
 
     Attributes:
         history: Internal variables by name with their shape, () of a number.
+
+    Example:
+        A dashpot: it remembers the strain of the increment before.
+
+        >>> class Dashpot:
+        ...     linear, young = False, 1.0
+        ...     history = {"strain": (3, 3)}
+        ...     def advance(self, u, before):
+        ...         return {"strain": ufl.sym(ufl.grad(u))}
+        ...     def piola(self, u, before):
+        ...         return 2.0 * (ufl.sym(ufl.grad(u)) - before["strain"]) / before.dt
+        >>> sorted(Dashpot.history)
+        ['strain']
     """
 
     history: Mapping[str, tuple[int, ...]]

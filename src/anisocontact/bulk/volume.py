@@ -16,6 +16,13 @@ class Volume:
     Attributes:
         bulk: Bulk modulus K of the energy `K/2 e^2`, UFL, stress.
         change: Takes a displacement gradient H to e, UFL: `tr(H)`, `J - 1` or `ln J`.
+
+    Example:
+        Small strain, whose change of volume is the trace of the gradient:
+
+        >>> small = Volume(175e3, ufl.tr)
+        >>> small.change(0.01 * ufl.Identity(3)).ufl_shape
+        ()
     """
 
     bulk: Any

@@ -24,6 +24,13 @@ class CaseError(InputError):
 
     Attributes:
         errors: One for each mistake.
+
+    Example:
+        >>> try:
+        ...     validate({"title": "Nothing"})
+        ... except CaseError as wrong:
+        ...     [one.field for one in wrong.errors]
+        ['mesh', 'material', 'step']
     """
 
     def __init__(self, errors: list[InputError]) -> None:

@@ -34,7 +34,12 @@ type Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
 def build_parser() -> argparse.ArgumentParser:
-    """The parser of the command; the reference page is made from it."""
+    """The parser of the command; the reference page is made from it.
+
+    Example:
+        >>> build_parser().parse_args(["check", "case.toml"]).case
+        'case.toml'
+    """
     parser = argparse.ArgumentParser(
         prog="anisocontact",
         description="Frictional contact of surfaces that have a direction.",

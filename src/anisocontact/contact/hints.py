@@ -48,6 +48,18 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
 
     Returns:
         A line for each of them.
+
+    Example:
+        >>> from anisocontact import Contact, ContactLaw, Friction, NormalLaw, Adhesion
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> block = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+        >>> base = BoxSpec((-1, -1, -1), (3, 3, 1), (12, 12, 1))
+        >>> model = build_box({"block": block, "base": base})
+        >>> laws = Adhesion(stiffness=(5, 5)), Friction(coefficients=(0.3, 0.3))
+        >>> law = ContactLaw(NormalLaw(penalty=10.0), *laws)
+        >>> pair = Contact(model, "block.bottom", "base.top", law, mortar=False)
+        >>> coarse_slaves([pair])
+        ['contact of block.bottom with base.top: the facets of the slave are 4 times ...']
     """
     found = []
     for contact in contacts:

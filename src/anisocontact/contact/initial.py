@@ -32,6 +32,12 @@ class Overlap:
         depth: Largest depth, length.
         point: Where it is, (3,), length.
         count: Number of such points over all ranks.
+
+    Example:
+        See `initial_overlap`, which finds it.
+
+        >>> Overlap(0.1, np.array([0.5, 0.5, 0.0]), 9).depth
+        0.1
     """
 
     depth: float

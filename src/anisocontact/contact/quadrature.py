@@ -35,6 +35,13 @@ class FacetQuadrature:
         turn: Of edges of a mesh in the plane: change of the second tangent, which is that across
             the plane, with the position of the point, (3, 3); None of facets in space.
         spread: Shares of the nodes in the position that it goes with, (m, q, k); `basis` if None.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> points = facet_quadrature(model.space, model.facets("bar.top"), 2)
+        >>> points.count, points.nodes.shape  # 4 points on each of 4 facets of 4 nodes
+        (16, (4, 4))
     """
 
     nodes: Locals

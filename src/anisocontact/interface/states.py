@@ -58,6 +58,13 @@ class SlaveSurface:
         reference: Positions in the reference configuration, (n, 3) [length].
         reference_tangents: Two tangents there, (n, 2, 3) [length].
         tangents: The same material tangents now, (n, 2, 3) [length].
+
+    Example:
+        >>> flat = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
+        >>> turned = np.array([[[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]])  # by 90 degrees about z
+        >>> slave = SlaveSurface(np.zeros((1, 3)), flat, turned)
+        >>> [part.shape for part in slave.arrays]
+        [(1, 3), (1, 2, 3), (1, 2, 3)]
     """
 
     reference: Floats

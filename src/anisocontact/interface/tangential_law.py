@@ -99,7 +99,24 @@ class LawResult:
 
 
 class TangentialLaw(Protocol):
-    """A law of the tangential force; `internal` is the number of its own variables."""
+    """A law of the tangential force; `internal` is the number of its own variables.
+
+    Example:
+        Nothing but a viscous film; `PythonLaw` has an elastic law, and how one is used.
+
+        >>> class Film:
+        ...     internal = 0
+        ...     def update(self, state, kinematics):
+        ...         n, c = len(kinematics.pressure), 2.0 / kinematics.dt
+        ...         none = np.zeros((n, 2, 2))
+        ...         t = -c * kinematics.increment
+        ...         return LawResult(
+        ...             traction=t, slip=kinematics.increment, d_increment=none - c * np.eye(2),
+        ...             d_pressure=np.zeros((n, 2)), d_traction=none, d_elastic=none,
+        ...             internal=state.internal, energy=np.zeros(n),
+        ...             dissipation=-(t * kinematics.increment).sum(axis=1))
+        >>> check_own_variables(Film())
+    """
 
     internal: int
 

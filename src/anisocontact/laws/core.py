@@ -278,6 +278,10 @@ class Carried:
         place: Where it is given, "adhesion.directions" and the like.
         field: The field, if there is one.
         on: "master" or "slave".
+
+    Example:
+        >>> Carried("friction.directions", None, "slave").on_slave  # there is no field
+        False
     """
 
     place: str

@@ -50,6 +50,10 @@ class Idealisation:
         turn: Its change with the position, (3, 3).
         motions: Components of the motion of a rigid surface that leave it what it is.
         moments: 0 for components of moments that cancel over the whole body, else 1, (3,).
+
+    Example:
+        >>> Idealisation().dim, PlaneStrain().dim, PlaneStrain(lateral=True).lateral
+        (3, 2, True)
     """
 
     motions: ClassVar[tuple[str, ...]] = ("x", "y", "z", "rx", "ry", "rz")

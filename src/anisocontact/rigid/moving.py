@@ -45,6 +45,17 @@ class MovingInterface:
     Args:
         interface: The interface on the surface where it was drawn.
         body: The body it moves with.
+
+    Example:
+        >>> from anisocontact import Adhesion, Friction, Interface, NormalLaw, make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> laws = Adhesion(stiffness=(5.0, 5.0)), Friction(coefficients=(0.3, 0.3))
+        >>> face = Interface(plane, NormalLaw(penalty=10.0), *laws)
+        >>> die = RigidBody("die", (0, 0, 0))
+        >>> state = face.initial_state([[0.0, 0.0, 0.0]])
+        >>> die.move(z=0.1)
+        >>> MovingInterface(face, die).update(state, np.zeros((1, 3)), 1.0).traction.tolist()
+        [[0.0, 0.0, 1.0]]
     """
 
     def __init__(self, interface: Interface, body: RigidBody) -> None:
@@ -97,6 +108,20 @@ def motion_derivative(
 
     Returns:
         dt/d(translation, turn), (n, 3, 6), stress/length and stress.
+
+    Example:
+        The plane of `MovingInterface`, with its penalty of 10:
+
+        >>> from anisocontact import Adhesion, Friction, Interface, NormalLaw, make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> laws = Adhesion(stiffness=(5.0, 5.0)), Friction(coefficients=(0.3, 0.3))
+        >>> face = Interface(plane, NormalLaw(penalty=10.0), *laws)
+        >>> die = RigidBody("die", (0, 0, 0))
+        >>> state, x = face.initial_state([[0.0, 0.0, 0.0]]), np.zeros((1, 3))
+        >>> die.move(z=0.1)
+        >>> answer = MovingInterface(face, die).update(state, x, 1.0)
+        >>> motion_derivative(die, x, answer)[0, 2, 2]  # of the force along z, by z
+        np.float64(10.0)
     """
     arms = skew(x - body.position)
     by_spin = response.tangent @ arms - skew(response.traction)

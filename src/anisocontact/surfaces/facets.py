@@ -43,6 +43,13 @@ class FacetProjections:
             if the point is on an edge); 1 normal to an edge alone; 2 to none, a vertex.
         entity: Edge or vertex of the facet, (n,); -1 in the interior.
         edge: Direction of the edge in coordinates, (n, 2); zero unless on an edge.
+
+    Example:
+        >>> square = FacetSurface([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2, 3]],
+        ...                       "quad4")
+        >>> found = square.project([[0.25, 0.5, -0.1], [2.0, 0.5, -0.1]])
+        >>> [FACET_STATUS[code] for code in found.status], found.xi[0].tolist()
+        (['on', 'off'], [0.25, 0.5])
     """
 
     facet: Locals
@@ -74,6 +81,11 @@ class FacetSets:
     Args:
         offsets: Where the set of each point begins in `facets`, (n + 1,).
         facets: The sets one after the other, each in ascending order.
+
+    Example:
+        >>> sets = FacetSets(np.array([0, 2, 3]), np.array([4, 7, 1]))
+        >>> len(sets), sets[0].tolist(), sets[1].tolist()
+        (2, [4, 7], [1])
     """
 
     offsets: Ints

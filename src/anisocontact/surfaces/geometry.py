@@ -120,6 +120,13 @@ class GeometryDerivatives:
         a_co: a_ij,k, (n, 2, 2, 2).
         normal: n_k, k first, (n, 2, 3).
         h_co: h_ij,k, (n, 2, 2, 2).
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> drum = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=2.0)
+        >>> found = drum.geometry_derivatives([[0.0, 0.0]])
+        >>> bool(abs(found.a_co).max() == 0.0)  # the metric is the same everywhere
+        True
     """
 
     a_co: Floats

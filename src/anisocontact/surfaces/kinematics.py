@@ -17,6 +17,13 @@ class ConvectiveRate(NamedTuple):
     Args:
         xi: d xi^i/dt, (n, 2).
         gap: d xi^3/dt, (n,) [length/time].
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> rate = convective_velocity(plane, [[0.0, 0.0]], [0.0], [[1.0, 2.0, -3.0]])
+        >>> rate.xi.tolist(), rate.gap.tolist()
+        ([[1.0, 2.0]], [-3.0])
     """
 
     xi: Floats

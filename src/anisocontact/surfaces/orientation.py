@@ -19,6 +19,13 @@ class Orientation:
         inconsistent: Facets whose normal disagrees with that of a neighbour across an edge, (k,).
         volume: Enclosed volume, positive where normals point outward [length^3]; NaN if the
             surface is not closed.
+
+    Example:
+        >>> from anisocontact.surfaces import FacetSurface
+        >>> square = FacetSurface([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2, 3]],
+        ...                       "quad4")
+        >>> print(square.orientation())
+        the surface is open: it has no outside
     """
 
     closed: bool

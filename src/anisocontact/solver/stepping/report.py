@@ -126,6 +126,10 @@ class Cut:
         iterations: Newton iterations that were spent on it.
         count: How many places caused it, over all ranks.
         culprits: The first of them.
+
+    Example:
+        >>> print(Cut("drag", 3, 1.2, 1.0, 0.25, "the line search got stuck", 25, 0, ()))
+        drag 3  cut from 1 to 0.25 of the increment after 25 iterations: the line search got stuck
     """
 
     step: str
@@ -160,6 +164,10 @@ class StoppedError(RuntimeError):
     Attributes:
         failed: A point at which the laws failed, whole, on the first rank that has one: its
             `evaluate` and `tangent_errors` say more, its `write` keeps it in a file.
+
+    Example:
+        >>> print(StoppedError("drag", 3, "no convergence in 25 Newton iterations"))
+        step 'drag', increment 3: no convergence in 25 Newton iterations
     """
 
     failed: FailedPoint | None = None
