@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import pyvista
 from matplotlib import colormaps
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.quiver import Quiver
 from matplotlib.text import Text
@@ -20,7 +21,7 @@ from anisocontact.cli.main import main
 from anisocontact.interface import STATUS
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, caption, surfaces
-from anisocontact.results.report import curves, maps
+from anisocontact.results.report import along, curves, maps
 from anisocontact.results.report.frame import ContactView, axis_name
 from anisocontact.results.report.run_data import Moment, RunData
 from anisocontact.results.report.shape import Drawings
@@ -168,6 +169,22 @@ def test_a_small_contact_is_seen_alone(radius, shown):
     assert quiver.N > 12
 
 
+@pytest.mark.parametrize(("end", "shown"), [(1.0, (0.0, 2.5)), (15.0, None)])
+def test_curves_show_what_touches(end: float, shown: tuple[float, float] | None) -> None:
+    """An outline from 0 to 20 of 41 points that touches up to some place.
+
+    Requirement: where contact is little of it, the curves show that alone, and three spacings of
+    0.5 around it: of a ball on a block twelve points of 41 stood within a twentieth of the width.
+    """
+    places = np.column_stack([np.linspace(0.0, 20.0, 41), np.zeros((41, 2))])
+    points = _touching(places, np.tile([0.0, 1.0, 0.0], (41, 1)))
+    points.point_data["status"][:] = places[:, 0] <= end
+    axes = Figure().subplots()
+    axes.set_xlim(-1.0, 21.0)
+    along._close_up(axes, [ContactView(points, 0)])
+    assert axes.get_xlim() == pytest.approx(shown or (-1.0, 21.0))
+
+
 @pytest.mark.parametrize(("height", "rows"), [(0.1, 1), (0.3, 2)])
 def test_arrows_stand_in_the_middle_of_what_they_stand_for(height: float, rows: int) -> None:
     """A strip of points, 1 long: its arrows are spread over its height.
@@ -313,7 +330,10 @@ pictures = false
 
 @pytest.mark.parametrize(
     ("kind", "named"),
-    [("axisymmetric", ["along z", "size"]), ("plane-strain", ["along x", "along z", "size"])],
+    [
+        ("axisymmetric", ["along z", "magnitude"]),
+        ("plane-strain", ["along x", "along z", "magnitude"]),
+    ],
 )
 def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     """Around an axis they balance each other, so the picture of the force leaves their sum out."""
@@ -325,7 +345,7 @@ def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     shown = {line.get_label(): line.get_ydata() for line in upper.lines}
     assert [name for name in shown if not name.startswith("_")] == named
     across = np.linalg.norm([shown[name] for name in named[:-1]], axis=0)
-    np.testing.assert_allclose(shown["size"], across, rtol=1e-12)
+    np.testing.assert_allclose(shown["magnitude"], across, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("kind", "cancel"), [("axisymmetric", True), ("plane-strain", False)])

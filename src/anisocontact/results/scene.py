@@ -38,6 +38,8 @@ _VIEW = 30.0
 _AMBIENT = 0.25
 #: How hard PNG files are compressed: more makes them a fifth smaller and takes a quarter longer.
 _QUICK = 3
+#: Share of the length of an axis up to which a place on it is zero.
+_NOTHING = 1e-9
 #: Height of letters: of the axes for VTK, of the scale of colours and of the heading in pixels.
 _OF_AXES, _OF_BAR, _OF_HEADING = 11.0, 20, 24
 
@@ -165,7 +167,7 @@ class Scene:
         for i, name in enumerate("XYZ"):
             words: Any = vtkStringArray()
             for value in np.linspace(low[i], high[i], int(labels[i])):
-                words.InsertNextValue(f"{value:.6g}")
+                words.InsertNextValue(tick(value, high[i] - low[i]))
             axes.SetAxisLabels(i, words)
             getattr(axes, f"Set{name}Title")(f"{name.lower()} [{unit}]")
             getattr(axes, f"Set{name}AxisMinorTickVisibility")(False)
@@ -239,6 +241,20 @@ class Scene:
         actor.SetMapper(mapper)
         self._renderer.AddActor(actor)
         return actor.GetProperty()
+
+
+def tick(value: float, span: float) -> str:
+    """What stands at a place of an axis: zero has no sign, and no rounding.
+
+    Args:
+        value: The place.
+        span: Length of the axis.
+
+    Example:
+        >>> tick(-0.0, 20.0), tick(-3e-15, 20.0), tick(-2.5, 20.0)
+        ('0', '0', '-2.5')
+    """
+    return f"{0.0 if abs(value) < _NOTHING * span else value:.6g}"
 
 
 def _plain(text: Any, size: int) -> None:

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+#: Room around what touches in a close-up, over its size; in facets where that is more.
+AROUND, FACETS = 0.3, 3.0
+#: Size of a close-up over that of the whole slave up to which it is shown alone.
+CLOSE = 0.6
+
 
 def pressure_along(views: Sequence[tuple[ContactView, Moment]]) -> Figure:
     """Pressure over the place in the plane, a curve for each moment."""
@@ -25,6 +30,7 @@ def pressure_along(views: Sequence[tuple[ContactView, Moment]]) -> Figure:
     for (view, moment), colour in zip(views, cycle(STEP_COLOURS), strict=False):
         _curve(axes, view, view.data["pressure"], label=plain(moment.title), color=colour)
     axes.set_ylim(bottom=0.0)
+    _close_up(axes, [view for view, _ in views])
     return _finished(figure, axes, views[0][0], "pressure [stress]")
 
 
@@ -46,6 +52,7 @@ def traction_along(view: ContactView, moment: Moment, limit: float) -> Figure:
         _curve(axes, view, values[:, i], line, label=label, color=colour)
     axes.set_ylim(-1.05 * limit, 1.05 * limit)
     axes.set_title(plain(moment.title))
+    _close_up(axes, [view])
     return _finished(figure, axes, view, "tangential traction on the slave [stress]")
 
 
@@ -54,6 +61,20 @@ def _curve(axes: Axes, view: ContactView, values: Floats, line: str = "-", **sty
     order = np.argsort(view.flat[:, 0])
     shown = np.where(view.touching, values, 0.0)[order]
     axes.plot(view.flat[order, 0], shown, line, marker=".", **style)
+
+
+def _close_up(axes: Axes, views: Sequence[ContactView]) -> None:
+    """Show what touches alone where that is little of the slave."""
+    places = np.concatenate([view.flat[:, 0] for view in views])
+    touching = np.concatenate([view.flat[view.touching, 0] for view in views])
+    if not touching.size:
+        return
+    first, last = places.min(), places.max()
+    spacing = (last - first) / max(len(views[0].flat) - 1, 1)
+    room = max(AROUND * np.ptp(touching), FACETS * spacing)
+    low, high = max(touching.min() - room, first), min(touching.max() + room, last)
+    if high - low < CLOSE * (last - first):
+        axes.set_xlim(low, high)
 
 
 def _direction(view: ContactView, which: int) -> str:

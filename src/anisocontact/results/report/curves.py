@@ -46,7 +46,7 @@ def force(run: RunData, contact: int) -> Figure:
             name = f"along {frame.names()[i]}"
             upper.plot(at, tangential[:, i], line, color=colour, label=name)
     size = np.linalg.norm(tangential, axis=1)
-    upper.plot(at, size, "-", color="black", lw=1.0, label="size")
+    upper.plot(at, size, "-", color="black", lw=1.0, label="magnitude")
     kind = "" if seen_along else "tangential "
     upper.set_ylabel(f"{kind}force on the slave [force]")
     upper.legend(loc="best")

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
 from anisocontact.base.statuses import STATUS
-from anisocontact.results.report.along import pressure_along, traction_along
+from anisocontact.results.report.along import AROUND, CLOSE, FACETS, pressure_along, traction_along
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
 
@@ -32,10 +32,6 @@ NOISE = 1e-6
 LETTERS = 34
 #: Size of a map in which panels can share their axes, over that of the points.
 ROOM = 1.5
-#: Room around what touches in a close-up, over its size; in facets where that is more.
-AROUND, FACETS = 0.3, 3.0
-#: Size of a close-up over that of the whole slave up to which it is shown alone.
-CLOSE = 0.6
 #: Squares along the longer side of what touches, with an arrow each.
 _SQUARES = 6.0
 _BOTH = np.array([-1.0, 1.0])
