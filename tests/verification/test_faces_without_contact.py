@@ -85,3 +85,52 @@ def test_a_part_of_a_body_behind_its_master_is_told(tmp_path: Path, text: str, p
     about = [text for text in warnings if "lies behind its master" in text]
     assert len(about) == int(part)
     assert all("of body 'block'" in text and "other faces go through" in text for text in about)
+
+
+ROLL = """
+title = "Roll"
+symmetry = ["roll.left", "roll.top"]
+[idealisation]
+kind = "plane-strain"
+[mesh.disc.roll]
+radius = 0.2
+cells = [32, 4]
+part = "quarter"
+[material.roll]
+model = "mooney-rivlin"
+C10 = 0.293
+C01 = 0.177
+bulk_modulus = 1e3
+[surface.plate]
+shape = "plane"
+point = [0, -0.2, 0]
+normal = [0, 1, 0]
+[rigid.plate]
+reference = [0, -0.2, 0]
+[[contact]]
+slave = "roll.outer"
+master = "plate"
+friction = { coefficients = 0 }
+PASS
+[[step]]
+name = "press"
+increments = 8
+motion = { plate = { y = 0.1 } }
+"""
+
+
+@pytest.mark.parametrize("given", ['method = "penalty"', 'pass = "single"'])
+def test_penetration_of_a_penalty_is_no_other_face(tmp_path: Path, given: str) -> None:
+    """Requirement: nodes no deeper than points that press are not told to have gone through.
+
+    All of the skin is slave; the penalty lets it in by 6 % of the size of the body.
+    """
+    path = tmp_path / "case.toml"
+    path.write_text(ROLL.replace("PASS", given))
+    warnings: list[str] = []
+    built = build(load(path))
+    for _ in built.solver.run(on_warning=warnings.append):
+        pass
+    (contact,) = built.problem.contacts
+    assert -contact.last.gap.min() > 0.1 * contact.slave_points.size
+    assert not [text for text in warnings if "behind its master" in text]

@@ -14,7 +14,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.arrays import by_place
 from anisocontact.contact import Contact
-from anisocontact.contact.side_of_master import CRUSHED
+from anisocontact.contact.side_of_master import CRUSHED, SideOfMaster
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 
@@ -143,8 +143,13 @@ class SidesKept:
         comm = where.comm
         name = watched.one.slave.partition(".")[0]
         behind, depth, place = self._behind(watched, u, whole)
-        if behind > WORTH_A_WORD:
-            self.partly.append(Behind(name, behind, depth, watched.one.name.split(" on ")[-1]))
+        # nodes beside pressed points of a soft penalty are as deep as these
+        if behind > WORTH_A_WORD and (pressed_in := _pressed_in(where)) > 0.0:
+            beyond = self._behind(watched, u, whole, pressed_in)[0]
+        else:
+            beyond = behind
+        if beyond > WORTH_A_WORD:
+            self.partly.append(Behind(name, beyond, depth, watched.one.name.split(" on ")[-1]))
         pressed = where.from_behind()
         gone, inside = where.through(), where.inside()
         far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
@@ -166,16 +171,23 @@ class SidesKept:
             yield Culprit("behind", place, text + far, watched.one.name)
 
     def _behind(
-        self, watched: _Watched, u: Floats, whole: bool
+        self, watched: _Watched, u: Floats, whole: bool, pressed_in: float = 0.0
     ) -> tuple[float, float, tuple[float, float, float]]:
-        """Share of a body behind the master that was not at first, how far at most, and where."""
+        """Share of a body behind the master that was not at first, how far at most, and where.
+
+        Args:
+            watched: The body and its contact.
+            u: Displacement of the local nodes, (nodes, 3), length.
+            whole: Whether it is true for all nodes, not for those that can be touched alone.
+            pressed_in: Depth beyond which nodes count, besides a share of the body, length.
+        """
         if watched.body is None:
             return 0.0, 0.0, (0.0, 0.0, 0.0)
         comm = watched.one.space.mesh.comm
         x = watched.places + (u[watched.nodes] if whole else watched.carried(u))
         seen = watched.one.master.look(x)
         depth = np.where(seen.on, -seen.gap, 0.0)
-        behind = depth > DEEP * watched.body.size
+        behind = depth > pressed_in + DEEP * watched.body.size
         count, total = comm.allreduce(np.array([float(behind.sum()), float(len(behind))]))
         deepest = (0.0, [0.0, 0.0, 0.0])
         if len(depth):
@@ -194,6 +206,14 @@ class SidesKept:
         known = [place for place in one.space.mesh.comm.allgather(local) if place is not None]
         position, point, facet = known[by_place([place for place, *_ in known])[0]]
         return Culprit("behind", position, why, watched.one.name, point, facet)
+
+
+def _pressed_in(where: SideOfMaster) -> float:
+    """Depth of the deepest point in contact, the same on all ranks, length."""
+    closed = np.flatnonzero(where.closed & ~where.idle)
+    seen = where.look(where.now[closed], closed)
+    depth: list[float] = where.comm.allgather(float((-seen.gap[seen.on]).max(initial=0.0)))
+    return max(depth)
 
 
 def _motions(arms: Floats) -> Floats:
