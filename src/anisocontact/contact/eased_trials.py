@@ -34,6 +34,11 @@ class EasedTrials(Trials):
         alone = self._own is None and self._layer is None
         return alone and self.interface.penalties()[0] > 0.0
 
+    @property
+    def softened(self) -> bool:
+        """Whether they answer with a share of the penalties, see `soften_laws`."""
+        return self._laws.softened
+
     def soften_laws(self, share: float) -> None:
         """Answer with a share of the penalties, `by_penalty`; with 1 by the law as it is."""
         self._laws.soften(share)

@@ -21,6 +21,7 @@ class TrialLaws:
 
     Attributes:
         layer: What stands behind adhesion; None for nothing.
+        softened: Whether they are a share of the penalties that were given.
     """
 
     def __init__(self, given: Any, master: Master, comm: Any) -> None:
@@ -28,6 +29,7 @@ class TrialLaws:
         self._laws: AugmentedLaw = given
         self._stiff_laws: AugmentedLaw = given
         self.layer: Layer | None = None
+        self.softened = False
 
     def follows(self, own: Multipliers | None) -> Semismooth | Layer | None:
         """What follows every step of Newton's method.
@@ -47,6 +49,7 @@ class TrialLaws:
 
     def soften(self, share: float) -> None:
         """Answer with a share of the penalties; with 1 by the laws as they are."""
+        self.softened = share != 1.0
         soft = self._given if share == 1.0 else self._given.stiffened(share, share)
         self._laws = self._stiff_laws = soft
 

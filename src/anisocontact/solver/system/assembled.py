@@ -50,8 +50,9 @@ class AssembledSystem:
                 wrong = _gone(*gone)
             if wrong is not None:
                 raise LostError(wrong)
-            moved = aid.improve(self.nodal, self.balance.force_scale)
-            if moved and aid.travels:
+            counts = aid.on_its_way(self.contact_term.softened)
+            moved = aid.improve(self.nodal, self.balance.force_scale, counts)
+            if moved and aid.travels and counts:
                 self._go_on(x)
             if moved and aid.flow.flows:
                 return True

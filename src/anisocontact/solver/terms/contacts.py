@@ -144,6 +144,11 @@ class Contacts(Term):
         return any([one.soften() for one in self._trials])
 
     @property
+    def softened(self) -> bool:
+        """Whether penalties are a share of those of the laws, on the way to these."""
+        return any(one.softened for one in self._trials)
+
+    @property
     def simultaneous(self) -> bool:
         """Whether multipliers follow every correction of Newton's method."""
         return any(one.simultaneous for one in self._trials)

@@ -31,6 +31,7 @@ class LostWork:
         self.driven = self.fell = False
         self.spent = 0.0
         self._free: Sequence[FreeBody] = ()
+        self._place: Floats = np.zeros(0)
         self._carried: Floats = np.zeros(0)
         self._before: dict[int, tuple[Flags, Floats]] = {}
 
@@ -41,7 +42,8 @@ class LostWork:
             free: Bodies with springs.
             u: Accepted displacement of the local nodes, (nodes, 3), length.
         """
-        self._free, self.spent, self._carried = free, 0.0, np.zeros_like(u)
+        self._free, self.spent = free, 0.0
+        self.go_on(u, np.zeros_like(u))
         self._before = {
             id(c): (np.zeros(len(c.state), dtype=np.bool_), np.zeros_like(u))
             for one in free
@@ -58,22 +60,21 @@ class LostWork:
         """
         self.driven |= any([one.against_loads(force) for one in self._free])
 
-    def count(self, u: Floats, way: Floats, force: Floats) -> None:
+    def count(self, u: Floats, force: Floats) -> None:
         """Count the way to an equilibrium; collective.
 
         Args:
             u: Displacement of the local nodes there, (nodes, 3), length.
-            way: From where the springs are anchored, (nodes, 3), length.
             force: Of the springs, (nodes, 3).
         """
         # what springs have carried is let go where the next equilibrium starts
         against = 0.5 * (self._carried + force + self._stopping(u))
         if self.driven:
-            self.spent -= self._comm.allreduce(float((against * way).sum()))
+            self.spent -= self._comm.allreduce(float((against * (u - self._place)).sum()))
 
-    def go_on(self, force: Floats) -> None:
-        """Take it that the next way starts where the springs carry this, (nodes, 3)."""
-        self._carried = force
+    def go_on(self, u: Floats, force: Floats) -> None:
+        """Take it that the next way starts here, where the springs carry this, (nodes, 3)."""
+        self._place, self._carried = u.copy(), force
 
     def _stopping(self, u: Floats) -> Floats:
         """What contacts have come to carry where bodies came down on the way to here, (nodes, 3).

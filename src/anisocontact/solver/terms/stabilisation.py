@@ -232,12 +232,13 @@ class Stabilisation(Term):
             found.append((nodes, nodes, np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))))
         return found
 
-    def improve(self, u: Floats, at_work: float) -> bool:
+    def improve(self, u: Floats, at_work: float, counts: bool = True) -> bool:
         """Let the springs go on from an equilibrium.
 
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
             at_work: Norm of the forces at work.
+            counts: Whether work on the way there counts, see `on_its_way`.
 
         Returns:
             Whether they still carried something, so that equilibrium has to be found again.
@@ -252,7 +253,8 @@ class Stabilisation(Term):
         force = self.force(u)
         if self._count == 0:  # later springs fade, and any load is most of them
             self._work.look(force)
-        self._work.count(u, u - self._anchor, force)
+        if counts:
+            self._work.count(u, force)
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
             return False
@@ -263,11 +265,22 @@ class Stabilisation(Term):
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
             )
         self._anchor = u.copy()
-        self._work.go_on(force)
+        if counts:
+            self._work.go_on(u, force)
         for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
                 free.stiffness = max(self._next_stiffness(free, held, force), LEAST * self._scale)
         return True
+
+    def on_its_way(self, softened: bool) -> bool:
+        """Whether bodies come through an equilibrium on their way; collective.
+
+        Not where they have sunk into penalties that are softer than those of the laws.
+
+        Args:
+            softened: Whether there are such penalties.
+        """
+        return not (softened and any([free.touched() for free in self._free]))
 
     def _next_stiffness(self, free: FreeBody, held: Sequence[Contact], force: Floats) -> float:
         """Stiffness of the springs of a body for its next equilibrium.
