@@ -38,6 +38,8 @@ _VIEW = 30.0
 _AMBIENT = 0.25
 #: How hard PNG files are compressed: more makes them a fifth smaller and takes a quarter longer.
 _QUICK = 3
+#: Numbers on the y axis of a box from which on those at its ends are left out.
+_MANY = 5
 #: Share of the length of an axis up to which a place on it is zero.
 _NOTHING = 1e-9
 #: Height of letters: of the axes for VTK, of the scale of colours and of the heading in pixels.
@@ -166,8 +168,10 @@ class Scene:
         axes.SetScreenSize(_OF_AXES)
         for i, name in enumerate("XYZ"):
             words: Any = vtkStringArray()
-            for value in np.linspace(low[i], high[i], int(labels[i])):
-                words.InsertNextValue(tick(value, high[i] - low[i]))
+            # seen from aside, numbers at the ends of y would stand on those of x and z
+            inner = name == "Y" and labels[2] > 1
+            for word in ticks(low[i], high[i], int(labels[i]), inner):
+                words.InsertNextValue(word)
             axes.SetAxisLabels(i, words)
             getattr(axes, f"Set{name}Title")(f"{name.lower()} [{unit}]")
             getattr(axes, f"Set{name}AxisMinorTickVisibility")(False)
@@ -243,18 +247,22 @@ class Scene:
         return actor.GetProperty()
 
 
-def tick(value: float, span: float) -> str:
-    """What stands at a place of an axis: zero has no sign, and no rounding.
+def ticks(low: float, high: float, count: int, inner: bool = False) -> list[str]:
+    """What stands at places of an axis: zero has no sign, and no rounding.
 
     Args:
-        value: The place.
-        span: Length of the axis.
+        low: Where it begins.
+        high: Where it ends.
+        count: How many places, both ends among them.
+        inner: Whether its ends are left out where there are enough numbers between them.
 
     Example:
-        >>> tick(-0.0, 20.0), tick(-3e-15, 20.0), tick(-2.5, 20.0)
-        ('0', '0', '-2.5')
+        >>> ticks(-20.0, -0.0, 3), ticks(-0.3, 0.1, 5, inner=True)
+        (['-20', '-10', '0'], ['', '-0.2', '-0.1', '0', ''])
     """
-    return f"{0.0 if abs(value) < _NOTHING * span else value:.6g}"
+    places = np.linspace(low, high, count)
+    words = [f"{0.0 if abs(v) < _NOTHING * (high - low) else v:.6g}" for v in places]
+    return ["", *words[1:-1], ""] if inner and count >= _MANY else words
 
 
 def _plain(text: Any, size: int) -> None:
