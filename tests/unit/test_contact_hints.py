@@ -181,7 +181,7 @@ def test_round_cells_are_not_told_to_be_round():
     contact = Contact(model, "disc.outer", "ring.inner", Friction(coefficients=0.3))
     (line,) = overlapping([(contact, "fit", contact.facet_size)], "adjust = true")
     assert "arcs over their facets" in line
-    assert line.endswith("it is wrong by as much, finer facets mend it")
+    assert line.endswith("it is wrong by as much, finer facets reduce that")
 
 
 @pytest.mark.parametrize(

@@ -98,9 +98,7 @@ def test_a_law_that_remembers_is_named():
             found = super().update(state, kinematics)
             return LawResult(**vars(found) | {"traction": self.asked * found.traction})
 
-    assert "Counts answers otherwise when it is asked the same again" in wrong_slopes(
-        Counts(), *_points()
-    )
+    assert "Counts gives another traction for the same input" in wrong_slopes(Counts(), *_points())
 
 
 def _contact(model, law, exact):

@@ -210,7 +210,7 @@ def faceted(contacts: Sequence[Contact]) -> list[str]:
             f"contact of {one.name}: arcs over its facets are {one.sagitta:.3g} high, which "
             f"bodies as stiff as these close under {made:.3g}, and the largest pressure, as a mean "
             f"over some facets, is {peak:.3g}: pressures at points are those of the meshes, "
-            f"resultants are not; {_finer(one)} or nodes that match mend it"
+            f"resultants are not; {_finer(one)} or nodes that match reduce that"
         )
     return found
 
@@ -299,7 +299,7 @@ def _flat(contact: Contact, depth: float) -> str:
         return ""
     return (
         f"; arcs over their facets are {sagitta:.3g} high, {100.0 * sagitta / depth:.0f}% of that: "
-        f"where an interference is meant it is wrong by as much, {_finer(contact)} mend it"
+        f"where an interference is meant it is wrong by as much, {_finer(contact)} reduce that"
     )
 
 

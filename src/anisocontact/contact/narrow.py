@@ -14,7 +14,7 @@ from anisocontact.contact.slave_nodes import SlaveNodes
 NARROW = (
     "no slave node that touches is among nodes that all touch, in any increment: the contact is "
     "narrower than two facets, and pressures at points are off by 10 to 40% (a Hertz contact of "
-    "0.5 to 1 facet in radius); resultants are not; finer facets where it touches mend it"
+    "0.5 to 1 facet in radius); resultants are not; finer facets where it touches reduce that"
 )
 
 

@@ -65,7 +65,7 @@ def wrong_slopes(law: TangentialLaw, state: LawState, kinematics: LawKinematics)
         here, again = evaluate(law, state, kinematics), evaluate(law, state, kinematics)
         who = f"the law {type(law).__name__}"
         if not np.array_equal(here.traction, again.traction):
-            return f"{who} answers otherwise when it is asked the same again: it must not remember"
+            return f"{who} gives another traction for the same input: it must not keep a state"
         for name, given, found, smooth in _blocks(law, (state, kinematics), here):
             larger = np.maximum(_size(given), _size(found))
             wrong = smooth & (_size(given - found) > _WRONG * larger)

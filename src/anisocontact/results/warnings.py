@@ -237,7 +237,7 @@ def _below_arcs(contact: Contact, gap: float | None) -> list[str]:
         return []
     return [
         f"arcs over its facets are {arcs:.3g} high, more than the least gap, {least:.3g}: the "
-        "round bodies that they stand for may touch; round cells (order 2) or finer facets tell"
+        "round bodies that they stand for may touch; round cells (order 2) or finer facets show it"
     ]
 
 
