@@ -205,11 +205,11 @@ _AMPLITUDES = Kinds(_KIND, "kind", (Table, Ramp, Sine, Cycles))
 
 
 def register_amplitude[T: type[Any]](kind: T) -> T:
-    """Let an amplitude be asked for by its name, in Python and in case files read afterwards.
+    """Register an amplitude by its name, for Python and case files read afterwards.
 
     Args:
         kind: Class with an `entry`, whose parameters its constructor takes by name; an object of
-            it is called with a time and answers a number.
+            it is called with a time and returns a number.
 
     Returns:
         The class, so that this serves as a decorator.

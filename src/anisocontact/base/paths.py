@@ -204,7 +204,7 @@ _PATHS = Kinds(_KIND, "kind", (Polyline, Circle, TimedPath))
 
 
 def register_path[T: type[Any]](kind: T) -> T:
-    """Let a path be asked for by its name, in Python and in case files read afterwards.
+    """Register a path by its name, for Python and case files read afterwards.
 
     Args:
         kind: Class with an `entry`, whose parameters its constructor takes by name, and with

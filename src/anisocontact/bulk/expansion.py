@@ -21,7 +21,7 @@ from anisocontact.mesh import Idealisation, Model
 
 @typed
 class ThermalExpansion:
-    """A material that expands with the temperature of its body; see `Step.temperature`.
+    """A material with thermal expansion; see `Step.temperature`.
 
     Args:
         material: The material.
@@ -73,7 +73,7 @@ def without_expansion(material: Material) -> Any:
 
 
 class Heated(Idealisation):
-    """Gradients of a body that expands, as its material sees them.
+    """Mechanical part of the gradients of a body with thermal expansion.
 
     Args:
         law: Its material.

@@ -19,7 +19,7 @@ from anisocontact.mesh import Idealisation, Model
 
 @dataclass(frozen=True)
 class Before:
-    """What a material knows of the last accepted increment.
+    """Internal variables of the last accepted increment, and the time since.
 
     Attributes:
         variables: Internal variables by name, UFL, zero at the start.
@@ -35,7 +35,7 @@ class Before:
 
 
 class HistoryMaterial(Protocol):
-    """What is asked of a material with a history, beside `linear = False` and `young`.
+    """Protocol of a material with internal variables, beside `linear = False` and `young`.
 
     The tangent is the derivative of `piola`, in which the variables of before are constant: where
     `piola` uses the new ones that `advance` gives, it is the consistent tangent of their update.

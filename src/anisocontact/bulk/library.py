@@ -41,7 +41,7 @@ _MATERIALS = Kinds(
 
 
 def register_material[T: type[Any]](model: T) -> T:
-    """Let a class be asked for by its name, in Python and in case files that are read afterwards.
+    """Register a material by its name, for Python and case files that are read afterwards.
 
     Args:
         model: Class with an `entry`, whose parameters its constructor takes by name.

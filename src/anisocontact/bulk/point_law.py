@@ -26,7 +26,7 @@ from anisocontact.mesh import Idealisation, Model
 
 @dataclass(frozen=True, eq=False)
 class PointState:
-    """What happens at n points of a body in an increment.
+    """Strain, internal variables and time increment at n points of a body.
 
     Attributes:
         strain: Strain at its end, of the kind the law names, (n, 3, 3).
@@ -48,7 +48,7 @@ class PointState:
 
 @dataclass(frozen=True, eq=False)
 class PointResult:
-    """What a law says of them.
+    """Stress, tangent and internal variables of n points.
 
     Attributes:
         stress: Stress conjugate to the strain, (n, 3, 3).
@@ -72,7 +72,7 @@ class PointResult:
 
 
 class PointLaw(Protocol):
-    """What is asked of a law of points, beside `linear = False` and `young`.
+    """Protocol of a stress update at points, beside `linear = False` and `young`.
 
     A law that is elastic against a change of volume may have `volume(u)` of that part in UFL beside
     it, see `ElasticVolume`.

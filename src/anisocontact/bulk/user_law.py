@@ -23,7 +23,7 @@ _SYMMETRIC = 1e-8
 
 
 class UserLaw:
-    """A law of points of the user's, whose answers are looked at.
+    """A stress update of the user's, whose results are checked.
 
     Args:
         law: Object with `update(state)` and `young`, and `strain` and `history` if it is not at

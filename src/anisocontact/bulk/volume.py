@@ -11,7 +11,7 @@ from anisocontact.base.fenicsx import ufl
 
 @dataclass(frozen=True)
 class Volume:
-    """What a material says of its change of volume.
+    """Volumetric part of a material: its bulk modulus and measure of the change of volume.
 
     Attributes:
         bulk: Bulk modulus K of the energy `K/2 e^2`, UFL, stress.

@@ -310,7 +310,7 @@ def _finer(contact: Contact) -> str:
 
 
 def warn_of(contacts: Sequence[Contact]) -> None:
-    """Tell a script: a Python warning of the category `ModelWarning` for each line.
+    """Issue a Python warning of the category `ModelWarning` for each doubtful side or field.
 
     Args:
         contacts: The contacts, as of `doubtful_sides`.

@@ -111,7 +111,7 @@ def initial_overlap(contact: PlacedSlave, size: float) -> Overlap | None:
 
 
 def check_start(contact: Beginning, size: float) -> None:
-    """Refuse what cannot be meant; contacts ask for it when they are made.
+    """Check slave and master before the first step; done when a contact is made.
 
     Args:
         contact: The contact, before the first step.

@@ -16,17 +16,17 @@ SCHEMES = (AUTO, NEWTON, UZAWA)
 @typed
 @dataclass(frozen=True)
 class Augmentation:
-    """How exactly a contact is to hold.
+    """Settings of multipliers (augmented Lagrangian): tolerance and how they are found.
 
     Args:
         tolerance: Largest penetration and elastic slip, share of the facet size, > 0.
         tangential: Whether the stiffness of adhesion is a penalty as well; not if it is physical.
-        multipliers: Way to the multipliers, one of `SCHEMES`.
+        multipliers: Method for the multipliers, one of `SCHEMES`.
         required: Whether an increment fails in which no multipliers are found; if not, penalties
             hold in it, and the run says so.
 
     Raises:
-        InputError: The tolerance is out of range, or there is no such way.
+        InputError: The tolerance is out of range, or there is no such method.
 
     Example:
         >>> Augmentation().tolerance

@@ -120,7 +120,7 @@ class Interface(CopiedByArguments):
         return next((f"{c.place}_on" for c in self.carried[:2] if c.on_slave), "")
 
     def takes_slave(self) -> bool:
-        """Whether a surface of the slave would change what is answered.
+        """Whether a surface of the slave would change the tractions.
 
         It carries directions, and its turn against the master turns the slip of `transport`.
 

@@ -83,7 +83,7 @@ class SlaveSurface:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """What an interface answers to positions of n slave points.
+    """Tractions, tangent and trial state of n slave points.
 
     Args:
         traction: t = N n + T on the slave, (n, 3) [stress].

@@ -15,7 +15,7 @@ from anisocontact.base.python_file import where_failed
 
 @dataclass(frozen=True, eq=False)
 class LawState:
-    """What n points remember, turned to where they are now.
+    """History variables of n points, rotated to where they are now.
 
     Args:
         traction: Elastic force, (n, 2) [stress].
@@ -35,7 +35,7 @@ class LawState:
 
 @dataclass(frozen=True, eq=False)
 class LawKinematics:
-    """What happens to n points in contact in this step.
+    """Slip increment, pressure and time step of n points in contact.
 
     Args:
         increment: Slip increment, (n, 2) [length].

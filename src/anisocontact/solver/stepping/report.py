@@ -158,7 +158,7 @@ class StoppedError(RuntimeError):
         increment: Number of the increment that failed.
         reason: Why, in a few words.
         culprits: The first places that caused it.
-        points: Positions of all slave points at which the law had no answer, (n, 3), length.
+        points: Positions of all slave points at which the law failed, (n, 3), length.
         tried: What was tried, in a few words.
 
     Attributes:

@@ -217,15 +217,15 @@ class ContactProblem(Uncopied):
             increments: How many; the end of each is met exactly.
             duration: Time the step takes.
             limits: How far increments may be cut.
-            callback: Called for each accepted part: the share of the step that is done, and its
-                Newton iterations; what it returns, if true, ends the step.
+            callback: Called for each accepted sub-increment: the share of the step that is done,
+                its Newton iterations; what it returns, if true, ends the step.
 
         Returns:
-            Newton iterations of the accepted parts.
+            Newton iterations of the accepted sub-increments.
 
         Raises:
-            RuntimeError: The smallest part failed; `u`, the history and what is prescribed are as
-                after the last accepted one.
+            RuntimeError: The smallest sub-increment failed; `u`, the history and what is
+                prescribed are as after the last accepted one.
             InputError: No increments, or as of `solve`.
 
         Example:

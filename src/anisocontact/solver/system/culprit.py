@@ -10,7 +10,7 @@ class Culprit:
     """A place that kept an increment from converging.
 
     Attributes:
-        kind: "law" (a slave point without answer), "flipping" (a slave point whose status
+        kind: "law" (a slave point whose law fails), "flipping" (a slave point whose status
             alternates), "hopping" (one whose facet alternates), "inverted" (an inverted cell),
             "behind" (a body behind its master) or "residual" (the node that is farthest from
             equilibrium).

@@ -65,8 +65,8 @@ class Problem(ComposedSystem, Uncopied):
             the last rank.
         layout: Where the unknowns are.
         together: The processes of the run, when one of them fails.
-        whole: Who answers for the bulk where every state is one of all unknowns.
-        reduction: Who answers for it now.
+        whole: The bulk with all unknowns.
+        reduction: The bulk as it is used now, whole or condensed.
         sides: Finds bodies behind their masters.
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.

@@ -28,7 +28,7 @@ SAME = 1e-6
 @typed
 @dataclass(frozen=True)
 class CyclicSymmetry:
-    """Two cut faces of a sector that stands for a whole: `u_slave = Q u_master`, Q a turn.
+    """Cyclic symmetry of two cut faces of a sector: `u_slave = Q u_master`, Q a rotation.
 
     The meshes of the faces need not match.
 

@@ -38,7 +38,7 @@ Place = tuple[str, str, str]
 @typed
 @dataclass(frozen=True)
 class Step:
-    """A stretch of loading; every value goes linearly from where it is to the one given.
+    """A load step; every value goes linearly from where it is to the one given.
 
     What is not named keeps its value. A displacement of None releases the support: the force it
     carried goes to zero along the step. A `LoadCurve` in the place of a number is followed instead.

@@ -21,7 +21,7 @@ _PLACES = 64
 @typed
 @dataclass(frozen=True)
 class Turn(Rotation):
-    """A screw motion: a rotation about an axis that moves along the step.
+    """A rigid rotation about an axis that moves along the step, a screw motion.
 
     At the share s of it a point that began it at x is at
     `p + R(s angle) (x - p) + s move`, R the rotation about the axis through p.
