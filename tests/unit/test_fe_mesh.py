@@ -23,7 +23,19 @@ def gmsh():
     return pytest.importorskip("gmsh", exc_type=(ImportError, OSError))
 
 
-def written(gmsh, path, *, version="4.1", binary=False, order=1, hexahedra=False, rename=None):
+def written(
+    gmsh,
+    path,
+    *,
+    version="4.1",
+    binary=False,
+    order=1,
+    hexahedra=False,
+    rename=None,
+    parts=0,
+    ghosts=False,
+    save_all=False,
+):
     """A unit cube, volume "block", faces "bottom" and "block.top", and what `rename` says."""
     names = {"block": "block", "bottom": "bottom", "top": "block.top"} | (rename or {})
     gmsh.initialize()
@@ -50,7 +62,11 @@ def written(gmsh, path, *, version="4.1", binary=False, order=1, hexahedra=False
         gmsh.option.setNumber("Mesh.ElementOrder", order)
         gmsh.option.setNumber("Mesh.MshFileVersion", float(version))
         gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.option.setNumber("Mesh.SaveAll", save_all)
         gmsh.model.mesh.generate(3)
+        if parts:
+            gmsh.option.setNumber("Mesh.PartitionCreateGhostCells", ghosts)
+            gmsh.model.mesh.partition(parts)
         gmsh.write(str(path))
     finally:
         gmsh.finalize()
@@ -156,6 +172,38 @@ def test_gmsh_file_in_every_format(gmsh, tmp_path, version, binary, order, hexah
     assert model.body_names() == ["block"]
     assert volume == pytest.approx(1.0)
     assert areas == pytest.approx({"block.bottom": 1.0, "block.top": 1.0})
+
+
+@pytest.mark.parametrize(("version", "binary"), FORMATS)
+@pytest.mark.parametrize("ghosts", [False, True], ids=["alone", "ghosts"])
+def test_gmsh_file_of_a_partitioned_mesh(gmsh, tmp_path, version, binary, ghosts):
+    """Requirement: a mesh that gmsh has partitioned is the mesh that it was, also with ghost cells.
+
+    Source: its elements are in parts of entities, whose groups stand in $PartitionedEntities.
+    """
+    from anisocontact.mesh import read_gmsh
+
+    model = read_gmsh(
+        written(gmsh, tmp_path / "a.msh", version=version, binary=binary, parts=3, ghosts=ghosts)
+    )
+    volume, areas = volume_and_areas(model)
+    assert volume == pytest.approx(1.0)
+    assert areas == pytest.approx({"block.bottom": 1.0, "block.top": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        ({"order": 3}, r"given, those of orders 1 and 2 are read \(gmsh -order 2\)"),
+        ({"version": "2.2", "save_all": True}, "volume group 'block' has no cells; in format 2.2"),
+    ],
+)
+def test_gmsh_files_that_are_told_how_to_write(gmsh, tmp_path, made, words):
+    """Requirement: what gmsh has to be told to write is in the line that refuses a file."""
+    from anisocontact.mesh import read_gmsh
+
+    with pytest.raises(InputError, match=words):
+        read_gmsh(written(gmsh, tmp_path / "a.msh", **made))
 
 
 def test_example_mesh_is_what_its_script_says():

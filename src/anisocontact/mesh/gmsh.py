@@ -216,6 +216,12 @@ def _volumes(
 ) -> list[tuple[str, ElementBlock]]:
     named = [(name, block) for name, block in _named(msh, dim) if block.count]
     if not named:
+        empty = sorted(name for (of, _), name in msh.names.items() if of == dim and name)
+        if empty:
+            raise InputError(
+                f"{_GROUPS[dim]} group {empty[0]!r} has no cells; in format 2.2 gmsh writes none "
+                "into groups with Mesh.SaveAll"
+            )
         raise InputError("no named volume group; give each body a physical volume with a name")
     if bodies is not None and not len(bodies):
         raise InputError("no volume group is taken: the list of bodies is empty")

@@ -132,6 +132,10 @@ def _read(stream: Stream, comm: Any) -> tuple[MshFile, Ints]:
             stream.open_section(name)
             entities = _entities(stream)
             stream.close_section(name)
+        elif name == b"PartitionedEntities":
+            stream.open_section(name)
+            entities |= _partitioned_entities(stream)
+            stream.close_section(name)
         elif name == b"Nodes":
             stream.open_section(name)
             tags, out.points = sections.nodes(stream, comm)
@@ -185,11 +189,33 @@ def _entities(stream: Stream) -> Groups:
     for dim, count in enumerate(stream.sizes(4)):
         for _ in range(int(count)):
             tag = int(stream.ints()[0])
-            stream.floats(6 if dim else 3)
-            groups[dim, tag] = tuple(int(g) for g in stream.ints(int(stream.sizes()[0])))
-            if dim:
-                stream.ints(int(stream.sizes()[0]))
+            groups[dim, tag] = _physical_tags(stream, dim)
     return groups
+
+
+def _partitioned_entities(stream: Stream) -> Groups:
+    """Physical tags of the parts of entities in a mesh that was partitioned (4.1).
+
+    Its elements name these parts, which have tags of their own, in the place of the entities.
+    """
+    groups: Groups = {}
+    _, ghosts = stream.sizes(2)
+    stream.ints(2 * int(ghosts))
+    for dim, count in enumerate(stream.sizes(4)):
+        for _ in range(int(count)):
+            tag, _, _ = (int(v) for v in stream.ints(3))
+            stream.ints(int(stream.sizes()[0]))
+            groups[dim, tag] = _physical_tags(stream, dim)
+    return groups
+
+
+def _physical_tags(stream: Stream, dim: int) -> tuple[int, ...]:
+    """Those of an entity, past its box and the entities that bound it."""
+    stream.floats(6 if dim else 3)
+    tags = tuple(int(g) for g in stream.ints(int(stream.sizes()[0])))
+    if dim:
+        stream.ints(int(stream.sizes()[0]))
+    return tags
 
 
 def _nodes_4(stream: Stream, comm: Any) -> tuple[Ints, Floats]:
@@ -291,7 +317,9 @@ _VERSIONS = {
 
 def _node_count(kind: int) -> int:
     if kind not in ELEMENTS:
-        raise MshError(f"element type {kind} is not known")
+        raise MshError(
+            f"element type {kind} given, those of orders 1 and 2 are read (gmsh -order 2)"
+        )
     return ELEMENTS[kind][1]
 
 
