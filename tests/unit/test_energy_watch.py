@@ -14,7 +14,7 @@ from anisocontact.solver.stepping import energy_watch
 from anisocontact.solver.stepping.energy_watch import CAUSES, EnergyWatch
 from anisocontact.solver.system.reported import Energies
 
-RAN_OFF, JUMPED, CLOSED, SLID, COARSE, OVERLAPPED = CAUSES
+RAN_OFF, JUMPED, CLOSED, SLID, COARSE, HEAT_FELL, OVERLAPPED = CAUSES
 
 
 class _Points:
@@ -95,3 +95,32 @@ def test_the_energy_of_regularisation_by_its_name_of_before() -> None:
         assert energies["flow"] == 0.5
     with pytest.raises(KeyError, match="flo"):
         _ = energies["flo"]
+
+
+@pytest.mark.parametrize(
+    ("heat", "cause"),
+    [
+        ({"friction": -0.5}, HEAT_FELL),
+        ({"friction": 0.5, "viscous": -1.0}, HEAT_FELL),
+        ({"friction": -0.2}, COARSE),
+        ({"friction": 0.5}, COARSE),
+    ],
+)
+def test_dissipation_that_falls_is_the_cause(
+    watch: Any, heat: dict[str, float], cause: str
+) -> None:
+    """An increment that leaves 1 of 10 open, in which laws say what they have dissipated.
+
+    Requirement: where what was dissipated falls by more than a quarter of what is left open, the
+    law is named, not contact that began meanwhile. Source: second law of thermodynamics; a
+    dissipation with the wrong sign leaves twice itself open.
+    """
+    made, points = watch()
+    points.numbers = (10, 10, 0) if cause == COARSE else (5, 15, 0)
+    found = made.after(
+        {"external": 10.0, "residual": 1.0, "regularisation": 0.0} | heat, ran_off=False
+    )
+    assert found.cause == cause
+    again = EnergyWatch(made._problem)
+    again.restore(made.persistent())
+    assert again.persistent().tolist() == made.persistent().tolist()

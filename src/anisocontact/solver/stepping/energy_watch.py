@@ -29,8 +29,14 @@ CAUSES = (
     "contact began or ended within increments, more of them are needed where it does",
     "sliding began or ended within increments, more of them are needed where it does",
     "too few increments, forces at their ends stand for those on the way; or a body snaps through",
+    "a law or material of your own gives a negative dissipation",
     "bodies overlapped at the start, what pushes them apart is no work from outside",
 )
+#: What laws and materials turn into heat.
+DISSIPATED = ("friction", "viscous", "inelastic")
+#: Share of the residual of an increment from which on dissipation that falls is what made it. One
+#: with the wrong sign leaves twice itself open.
+FELL = 0.25
 _ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
 
 
@@ -47,7 +53,8 @@ class EnergyWatch:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._work = self._external = self._residual = self._regularisation = 0.0
+        self._work = self._external = self._residual = 0.0
+        self._regularisation = self._heat = 0.0
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(CAUSES))
         self._begun = self._overlap = self.pushed_apart = False
@@ -85,33 +92,37 @@ class EnergyWatch:
             energies: See `Problem.energies`.
             ran_off: Whether slave points left the end of a master in it.
         """
-        before = self._residual, self._external, self._regularisation
+        before = self._residual, self._external, self._regularisation, self._heat
         self._take(energies)
         self._work += abs(self._external - before[1])
+        left = self._residual - before[0]
         signs = (ran_off, self._regularisation != before[2], *self._changed(), True)
         cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
-        self._parts[cause] += self._residual - before[0]
+        if before[3] - self._heat > FELL * abs(left):
+            cause = len(CAUSES) - 2
+        self._parts[cause] += left
         self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
         return Imbalance(share, CAUSES[int(np.abs(self._parts).argmax())] if share > 0.0 else "")
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""
-        now = [float(self._begun), self._work, self._external, self._residual, self._regularisation]
+        energies = [self._external, self._residual, self._regularisation, self._heat]
+        now = [float(self._begun), self._work, *energies]
         return np.concatenate([now, self._parts, self._counts.reshape(-1)])
 
     def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
-        begun, self._work, self._external, self._residual, self._regularisation = map(
-            float, kept[:5]
-        )
+        begun, self._work, self._external, self._residual, *heats = map(float, kept[:6])
         self._begun = bool(begun)
-        self._parts, counted = np.split(kept[5:], [len(CAUSES)])
+        self._regularisation, self._heat = heats
+        self._parts, counted = np.split(kept[6:], [len(CAUSES)])
         self._counts = counted.astype(np.int64).reshape(self._counts.shape)
 
     def _take(self, energies: Mapping[str, float]) -> None:
         self._external, self._residual = energies["external"], energies["residual"]
         self._regularisation = energies["regularisation"]
+        self._heat = sum(energies.get(name, 0.0) for name in DISSIPATED)
 
     def _share(self, energies: Mapping[str, float]) -> float:
         residual = abs(self._residual)
