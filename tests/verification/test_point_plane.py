@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import DeadLoad, DraggingSpring, PrescribedPath, Push, drive
@@ -174,3 +175,30 @@ def test_push_over_a_surface_that_is_slippery_across() -> None:
     size = 10.0 / np.linalg.norm(along[:2] / [0.3, across])
     assert force == pytest.approx(size * along, rel=1e-4)
     assert history.points["position"][-1, 0] @ along == pytest.approx(1e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("force", [1.0, 1e-3, 1e6])
+def test_a_push_without_friction_goes_where_it_is_led(force: float) -> None:
+    """A point without friction is moved along the push by the length that is given, not across it.
+
+    Requirement: `Push`. Source: nothing resists along the plane, and of all positions that the
+    equations allow the nearest is taken. Tolerance: 1e-10 of the travel, rounding of positions.
+    """
+    plane = make_surface("plane", point=(0.3, -0.2, 0.1), normal=N_)
+    laws = NormalLaw(penalty=100.0 * force), Adhesion(stiffness=10.0 * force)
+    slippery = Interface(plane, *laws, Friction(coefficients=0))
+    push = Push(E, travel=[0.0, 0.02], start=START, pressure=15.0 * force, increments=3)
+    x = drive(slippery, push).steps["reference"]
+    assert np.allclose(x[-1] - x[0], 0.02 * E, rtol=0.0, atol=1e-10 * 0.02)
+
+
+def test_a_dead_load_without_friction_needs_a_dashpot_of_its_own() -> None:
+    """Requirement: no viscosity is made from a tangential stiffness that is rounding alone."""
+    plane = make_surface("plane", point=(0.3, -0.2, 0.1), normal=N_)
+    laws = NormalLaw(penalty=100.0), Adhesion(stiffness=10.0)
+    slippery = Interface(plane, *laws, Friction(coefficients=0))
+    load = {"start": START, "pressure": 15.0}
+    with pytest.raises(InputError, match="viscosity: missing; without contact and friction"):
+        drive(slippery, DeadLoad([0.0 * E, E], **load))
+    held = drive(slippery, DeadLoad([E, E], viscosity=50.0, **load)).steps["reference"]
+    assert np.allclose(held[-1] - held[0], 1.0 / 50.0 * E, rtol=0.0, atol=1e-9)

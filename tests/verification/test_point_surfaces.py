@@ -10,6 +10,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import History, Push, drive
+from anisocontact.point.foot import foot
 from anisocontact.surfaces import make_surface
 
 R, PITCH, PRESSURE = 10.0, 40.0, 10.0
@@ -126,3 +127,34 @@ def test_streamline_of_the_polar_plate_is_a_logarithmic_spiral() -> None:
     delta = np.arctan2((0.3 / 0.2) ** 2 * np.sin(f), np.cos(f)) - f
     x = _streamline(interface, 25.0)
     assert np.arctan2(x[1], x[0]) == pytest.approx(np.tan(delta) * np.log(2.5), rel=1e-7)
+
+
+@pytest.mark.parametrize("inside", [False, True])
+@pytest.mark.parametrize("degrees", [0.0, 23.79, 66.21, 90.0])
+@pytest.mark.parametrize("kind", ["cylinder", "sphere", "plane"])
+def test_a_load_begins_on_a_surface_through_the_origin(
+    kind: str, degrees: float, inside: bool
+) -> None:
+    """The origin on surfaces that are made of points and lengths far from it has a foot: itself.
+
+    Requirement: a load may begin on the surface. Source: closest points are known to rounding of
+    the lengths that a surface is made of, not to a share of their distance, which is 0 here.
+    """
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    up = 0.845 if inside else -0.845
+    round_one = {"axis": (c, s, 0.0), "radius": 0.845, "inside": inside}
+    surface = {
+        "cylinder": {"point": (0.3 * c, 0.3 * s, up), **round_one},
+        "sphere": {"centre": (0.0, 0.0, up), **round_one},
+        "plane": {"point": (0.3, 0.3 * c / (s + 1.0), 0.0), "normal": (0.0, 0.0, -up)},
+    }[kind]
+    made = make_surface(kind, **surface)
+    assert foot(made, np.zeros(3)).reached
+    assert foot(made, np.array([0.0, 0.0, 1e-13])).reached
+
+
+def test_a_point_beyond_the_end_of_a_surface_has_no_foot() -> None:
+    """Requirement: the end of a surface is told, however near it a point is but for rounding."""
+    disc = make_surface("revolution", point=(0, 0, 0), axis=(0, 0, 1), profile=[0.0, 0, 1.0, 0])
+    reached = [foot(disc, np.array([x, 0.0, 0.0])).reached for x in (0.999, 1.0, 1.000001, 1.1)]
+    assert reached == [True, True, False, False]

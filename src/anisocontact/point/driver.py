@@ -38,6 +38,8 @@ from anisocontact.point.newton import solve
 
 #: How often a step is halved before the drive stops.
 MOST_HALVINGS = 10
+#: Of the whole stiffness: a tangential one below is rounding.
+_ROUNDED = 1e-12
 
 
 @typed
@@ -126,7 +128,7 @@ class _Runner:
 
     def __init__(self, interface: PointInterface, load: Load, group: Group) -> None:
         self.interface, self.load, self.group = interface, load, group
-        self.stiffness = 0.0
+        self.stiffness = self.whole = 0.0  # tangential, and that in any direction: the largest
         self.turn = 0.0  # the largest of all steps
         self.now = self._free()
 
@@ -214,16 +216,23 @@ class _Runner:
             self._control(t),
             dt,
             sized,
-            self.stiffness or 1.0,
+            self.stiffness or self.whole or 1.0,
         )
         guess = balance.start
         aim = device.at(guess[:3], 0.0).aim
         if aim is not None:
             guess[:3] = aim + a.pose.foot.gap * a.pose.foot.normal
         trial, iterations = solve(balance, guess)
-        p = trial.pose.foot.tangent_plane
-        self.stiffness = max(self.stiffness, float(np.linalg.norm(p @ trial.d_force[:, :3] @ p, 2)))
+        self._stiffen(trial)
         return self._accepted(trial, device, t, iterations)
+
+    def _stiffen(self, trial: Trial) -> None:
+        """Take the stiffnesses met; without friction the tangential one is rounding, no scale."""
+        p, k = trial.pose.foot.tangent_plane, trial.d_force[:, :3]
+        self.whole = max(self.whole, float(np.linalg.norm(k, 2)))
+        along = float(np.linalg.norm(p @ k @ p, 2))
+        if along > _ROUNDED * self.whole:
+            self.stiffness = max(self.stiffness, along)
 
     def _accepted(self, trial: Trial, device: Device, t: float, iterations: int) -> _Accepted:
         a, r, areas = self.now, trial.response, self.group.areas

@@ -11,6 +11,8 @@ from anisocontact.surfaces import PROJECTION_STATUS, Surface
 
 # Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.
 _OFF_NORMAL = 1e-6
+# Of the lengths that surface and point are made of: what a closest point is known to, on poles too.
+_ROUNDED = 1e-10
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,8 @@ def foot(surface: Surface, x: Floats) -> Foot:
     except np.linalg.LinAlgError:  # at a centre of curvature every direction is nearest
         return nowhere
     off = np.linalg.norm(x - at.position - at.gap * at.normal)
-    scale = np.linalg.norm(x - at.position) + 1e-9 * np.linalg.norm(x)
-    return replace(at, reached=bool(off <= _OFF_NORMAL * scale))
+    rounded = _ROUNDED * (np.linalg.norm(x) + surface.extent)
+    return replace(at, reached=bool(off <= _OFF_NORMAL * np.linalg.norm(x - at.position) + rounded))
 
 
 def foot_at(surface: Surface, xi: Floats, gap: float) -> Foot:

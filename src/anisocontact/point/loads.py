@@ -266,7 +266,8 @@ class DeadLoad(Load):
             eta = 1e-4 * before.stiffness * float(self.times[-1] - self.times[0])
             if eta == 0.0:
                 raise InputError(
-                    "missing; without contact at the start there is no stiffness to scale it by",
+                    "missing; without contact and friction at the start there is no stiffness to "
+                    "scale it by",
                     field="viscosity",
                 )
         force = in_space(self.force(t), self.frame, before)

@@ -12,6 +12,8 @@ from anisocontact.point.press import pressed
 TOLERANCE = 1e-12
 #: Of these forces what rounding of positions may leave: farther off it is no equilibrium.
 MOST_ROUNDING = 1e-6
+#: Of the largest singular value: below it an equation is rounding.
+SINGULAR = 1e-13
 #: Iterations before the step is cut.
 MOST_ITERATIONS = 40
 #: Why a point without any force does not come to rest.
@@ -54,14 +56,20 @@ def _rounding(trial: Trial) -> float:
 
 
 def _direction(trial: Trial) -> Floats:
-    """Newton step; of least length where the equations do not fix all unknowns."""
-    try:
-        step = np.linalg.solve(trial.jacobian, -trial.residual)
-        if np.isfinite(step).all():
-            return step
-    except np.linalg.LinAlgError:
-        pass
-    return np.linalg.lstsq(trial.jacobian, -trial.residual, rcond=1e-13)[0]
+    """Newton step; of least length where the equations do not fix all unknowns.
+
+    So a point without friction is moved along a push and not across it. What is left of an equation
+    by rounding fixes nothing.
+    """
+    scale = np.linalg.norm(trial.jacobian, axis=0)
+    scale[:3] = scale[:3].max()
+    scale[scale == 0.0] = 1.0
+    scaled = trial.jacobian / scale
+    if np.linalg.cond(scaled) * SINGULAR < 1.0:
+        step: Floats = np.linalg.solve(scaled, -trial.residual)
+    else:
+        step = np.linalg.lstsq(scaled, -trial.residual, rcond=SINGULAR)[0]
+    return step / scale
 
 
 def _searched(balance: PointBalance, trial: Trial, step: Floats) -> Trial:
