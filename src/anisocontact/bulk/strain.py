@@ -74,7 +74,7 @@ class SmallStrain:
 
 
 class LogarithmicStrain:
-    """`E = ln(C)/2`, `C = (I + H)^T (I + H)`; NaN where a cell is turned inside out."""
+    """`E = ln(C)/2`, `C = (I + H)^T (I + H)`; NaN where a cell is inverted."""
 
     small = False
 

@@ -33,7 +33,7 @@ class Listener(Protocol):
         """An increment has converged; `numbers` is the summary so far."""
 
     def cut(self, cut: Cut) -> None:
-        """An increment has failed and is tried again in smaller parts."""
+        """An increment has failed and is tried again in smaller sub-increments."""
 
     def warning(self, text: str) -> None:
         """Something has happened that the user should look at."""

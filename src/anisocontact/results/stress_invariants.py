@@ -20,7 +20,7 @@ def von_mises(stress: Floats) -> Floats:
 def principal(stress: Floats) -> Floats:
     """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3).
 
-    A node on a cell whose stress is no number there, being inside out at that node, has none.
+    A node on a cell whose stress is no number there, being inverted at that node, has none.
     """
     known = np.isfinite(stress).all(axis=1)
     found = np.full((len(stress), 3), np.nan)

@@ -27,7 +27,7 @@ from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, STRAINED, WARNED
 
-#: Angle along a part of an increment beyond which it is worth a warning, radian.
+#: Angle along a sub-increment beyond which it is worth a warning, radian.
 TURNED = MARGIN * FOLLOWED
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05

@@ -1,8 +1,8 @@
 """What a state in equilibrium has to pass before it is accepted.
 
 Newton's method knows balance of forces and nothing else. A state in balance in which cells are
-inside out, or a body is where it cannot be, is no solution: it is refused with its reason, and the
-increment is tried in another way or in smaller parts.
+inverted, or a body is where it cannot be, is no solution: it is refused with its reason, and the
+increment is tried with another strategy or in smaller steps.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def held_points_stray(problem: Problem, _: Vec) -> Refusal | None:
 def turned_too_far(problem: Problem, x: Vec) -> Refusal | None:
     """Refuse states in which a body at small strain has turned beyond what its model can tell.
 
-    Smaller parts help where it had hardly turned before, since it may have jumped.
+    Smaller sub-increments help where it had hardly turned before, since it may have jumped.
     """
     found = {name: t for name, t in problem.turned(x).items() if t.too_far}
     if not found:

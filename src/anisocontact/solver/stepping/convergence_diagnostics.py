@@ -141,7 +141,7 @@ def _slave_point(
 
 
 def inverted_cells(problem: Problem) -> list[Culprit]:
-    """Cells that the last evaluation turned inside out, over all ranks."""
+    """Inverted cells of the last evaluation, over all ranks."""
     return _everywhere(problem, list(_inverted(problem)))
 
 

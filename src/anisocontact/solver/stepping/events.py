@@ -54,7 +54,7 @@ class EventWatch:
     Args:
         problem: The problem, where the step begins.
         step: The step.
-        smallest: Smallest part of an increment.
+        smallest: Smallest sub-increment.
 
     Attributes:
         happened: Whether the accepted state has the event.
@@ -111,7 +111,7 @@ class EventWatch:
         return "" if self._until is None else self._until.text
 
     def goal(self, done: float) -> float:
-        """Where the next part of an increment is to end; 0 where nothing is known.
+        """Where the next sub-increment is to end; 0 where nothing is known.
 
         Args:
             done: Share of the increment that is done.
@@ -121,7 +121,7 @@ class EventWatch:
         left, self._halved = self._beyond.end - done, not self._halved
         share = 0.5
         if self._until.event is not None:
-            # smaller parts have led to another history, in which it has not happened yet
+            # smaller sub-increments have led to another history, in which it has not happened yet
             share = 1.0 if left < 0.5 * self._finest and self._beyond.value != _SLID else 0.5
         elif not self._halved:
             way = self._beyond.value - self._last

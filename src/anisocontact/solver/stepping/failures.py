@@ -1,4 +1,4 @@
-"""Why a part of an increment has no solution, as it is told with a cut and at the end of a run."""
+"""Why a sub-increment has no solution, as it is said with a cut-back and at the end of a run."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Failures:
         return "; ".join(self._problem.stabilisation.notes) if place.before is None else ""
 
     def hopeless(self, step: Step, place: RunPosition, cuts: int) -> bool:
-        """Whether smaller parts need not be tried: nothing could hold a body where it touches.
+        """Whether no cut-back helps: nothing could hold a body where it touches.
 
         Args:
             step: The step.

@@ -14,7 +14,7 @@ CUT = 0.25
 GROWTH = 2.0
 #: Parts in a row that have to converge before the next one grows.
 STREAK = 2
-#: Share of an increment at which smaller parts are not likely to help.
+#: Share of an increment at which smaller sub-increments are not likely to help.
 SMALL = 0.01
 #: Newton iterations beyond which a part was hard enough not to grow.
 HARD = 15

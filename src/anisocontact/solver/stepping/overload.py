@@ -1,4 +1,4 @@
-"""Loads on a free body that friction cannot hold, told where a part of an increment fails.
+"""Loads on a free body that friction cannot hold, said where a sub-increment fails.
 
 A body that only contact holds cannot carry more along it than friction allows: `mu N` in the
 direction of the load on a flat contact, N what presses it on, and on others the limit load of
@@ -171,7 +171,7 @@ def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:
 
     Args:
         attempt: Why the last attempt failed.
-        grave: Whether that needs no overload to happen, such as cells that are inside out.
+        grave: Whether that needs no overload to happen, such as inverted cells.
         found: Loads that friction does not hold.
     """
     texts = [one.text for one in found]

@@ -1,4 +1,4 @@
-"""The state from which the next part of an increment is sought."""
+"""The first iterate of the next sub-increment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cells that the displacement has turned inside out."""
+"""Cells that the displacement has inverted."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Configuration:
         self._at = None
 
     def inverted(self) -> Floats:
-        """Middles of the cells of this rank that are turned inside out, (n, 3), length.
+        """Middles of the cells of this rank that are inverted, (n, 3), length.
 
         Cells at small strain do not count: their equations know no det F.
         """

@@ -69,7 +69,7 @@ class ReportedSystem(AssembledSystem):
         return self._accepted.outside
 
     def inverted_cells(self) -> Floats:
-        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
+        """Middles of the cells of this rank that the last evaluation inverted, (n, 3)."""
         return self._bodies.inverted()
 
     def reactions(self) -> dict[str, Floats]:

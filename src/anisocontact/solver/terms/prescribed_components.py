@@ -1,4 +1,4 @@
-"""Values that steps prescribe: linearly up to a number, or along a course."""
+"""Values that steps prescribe: linearly up to a number, or along a load curve."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class PrescribedComponents:
 
     @property
     def varies(self) -> bool:
-        """Whether a component follows a course."""
+        """Whether a component follows a load curve."""
         return bool(self._curved)
 
     @property

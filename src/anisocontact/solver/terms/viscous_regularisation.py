@@ -39,7 +39,7 @@ MOST_STEPS = 200
 
 
 class ViscousRegularisation(Term):
-    """Viscous flow of all bodies from the accepted state to an equilibrium.
+    """Viscous regularisation of all bodies from the accepted state to an equilibrium.
 
     Args:
         model: Mesh of the bodies.
