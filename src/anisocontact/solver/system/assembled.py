@@ -43,22 +43,27 @@ class AssembledSystem:
         """
         self.evaluate_at(x)
         aid, moved = self._aid, False
+        cycles = self.contact_term.in_cycles
         if aid is not None:
+            springs = aid.force(self.nodal)
             wrong = self.behind_a_master(x) if aid.flow.flows else None
             gone = aid.flown_off(self.nodal) if aid.flow.flows else None
             if gone is not None:
                 wrong = _gone(*gone)
             if wrong is not None:
                 raise LostError(wrong)
-            counts = aid.on_its_way(self.contact_term.softened)
-            moved = aid.improve(self.nodal, self.balance.force_scale, counts)
-            if moved and aid.travels and counts:
-                self._go_on(x)
+            moved = aid.improve(self.nodal, self.balance.force_scale)
             if moved and aid.flow.flows:
                 return True
             if moved:
                 self.contact_term.settle()
-        return self.contact_term.improve() or moved
+        improved = self.contact_term.improve()
+        if aid is not None:
+            softened = self.contact_term.softened or (cycles and improved)
+            through = aid.come_through(self.nodal, springs, softened)
+            if through and moved and aid.travels:
+                self._go_on(x)
+        return improved or moved
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any.

@@ -149,6 +149,11 @@ class Contacts(Term):
         return any(one.softened for one in self._trials)
 
     @property
+    def in_cycles(self) -> bool:
+        """Whether multipliers stay as they are in Newton's method, which leaves penetrations."""
+        return any(one.augmented and not one.simultaneous for one in self._trials)
+
+    @property
     def simultaneous(self) -> bool:
         """Whether multipliers follow every correction of Newton's method."""
         return any(one.simultaneous for one in self._trials)

@@ -232,13 +232,12 @@ class Stabilisation(Term):
             found.append((nodes, nodes, np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))))
         return found
 
-    def improve(self, u: Floats, at_work: float, counts: bool = True) -> bool:
+    def improve(self, u: Floats, at_work: float) -> bool:
         """Let the springs go on from an equilibrium.
 
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
             at_work: Norm of the forces at work.
-            counts: Whether work on the way there counts, see `on_its_way`.
 
         Returns:
             Whether they still carried something, so that equilibrium has to be found again.
@@ -253,8 +252,6 @@ class Stabilisation(Term):
         force = self.force(u)
         if self._count == 0:  # later springs fade, and any load is most of them
             self._work.look(force)
-        if counts:
-            self._work.count(u, force)
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
             return False
@@ -265,22 +262,27 @@ class Stabilisation(Term):
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
             )
         self._anchor = u.copy()
-        if counts:
-            self._work.go_on(u, force)
         for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
                 free.stiffness = max(self._next_stiffness(free, held, force), LEAST * self._scale)
         return True
 
-    def on_its_way(self, softened: bool) -> bool:
-        """Whether bodies come through an equilibrium on their way; collective.
+    def come_through(self, u: Floats, force: Floats, softened: bool) -> bool:
+        """Count the work on the way to an equilibrium; whether bodies come through it; collective.
 
-        Not where they have sunk into penalties that are softer than those of the laws.
+        They do not where they have sunk into penalties that are softer than those of the laws, or
+        are to be overcome by multipliers.
 
         Args:
+            u: Displacement of the local nodes there, (nodes, 3), length.
+            force: Of the springs that led there, (nodes, 3).
             softened: Whether there are such penalties.
         """
-        return not (softened and any([free.touched() for free in self._free]))
+        if not self._free or (softened and any([free.touched() for free in self._free])):
+            return False
+        self._work.count(u, force)
+        self._work.go_on(u, force)
+        return True
 
     def _next_stiffness(self, free: FreeBody, held: Sequence[Contact], force: Floats) -> float:
         """Stiffness of the springs of a body for its next equilibrium.
