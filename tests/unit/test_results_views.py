@@ -348,6 +348,27 @@ def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     np.testing.assert_allclose(shown["magnitude"], across, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("across", "panels"), [(0.0, 1), (2.0, 2)])
+def test_a_normal_force_that_cancels_is_not_drawn(across: float, panels: int) -> None:
+    """A ring around z that is pushed along it, as one on a bar.
+
+    Requirement: an empty panel of a force that is zero throughout is left out.
+    """
+    angles = 2.0 * np.pi * np.arange(40) / 40
+    around = np.column_stack([np.cos(angles), np.sin(angles), 0.0 * angles])
+    view = ContactView(_touching(10.0 * around, -around), 0)
+    force = 3.0 * np.array([[0.0, 0.0, 1.0]]) + across * view.frame.normal
+    run = SimpleNamespace(view=lambda *_: view, around_an_axis=False, is_resultant=lambda _: True)
+    run.vectors = lambda _: force
+    run.path_length = lambda: ("time [time]", np.array([1.0]))
+    run.history = {f"contacts.0.{name}": np.ones(1) for name in ("max_pressure", "area")}
+    run.steps = [("push", [0])]
+    figure = curves.force(run, 0)
+    assert view.closed
+    assert len(figure.axes) == panels
+    assert figure.axes[-1].get_xlabel() == "time [time]"
+
+
 @pytest.mark.parametrize(("kind", "cancel"), [("axisymmetric", True), ("plane-strain", False)])
 def test_moments_that_cancel_are_zero(tmp_path, kind, cancel):
     """Around an axis the torque is left, on the contact and on the rigid surface that it meets."""

@@ -39,8 +39,13 @@ def force(run: RunData, contact: int) -> Figure:
     tangential = frame.of(forces) * shown
     label, distance = run.path_length()
     at = np.append(0.0, distance)
-    figure = new_figure(9.0, 6.0)
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    normal = forces @ frame.normal
+    # around a closed slave, as a ring on a bar, normal forces balance each other
+    alone = seen_along and not normal.any()
+    figure = new_figure(9.0, 4.5 if alone else 6.0)
+    rows = (1,) if alone else (2, 1)
+    panels = figure.subplots(len(rows), sharex=True, squeeze=False, height_ratios=rows)[:, 0]
+    upper = panels[0]
     for i, (line, colour) in enumerate((("-", "#1d4ed8"), ("--", "#c2410c"))):
         if shown[i]:
             name = f"along {frame.names()[i]}"
@@ -50,12 +55,13 @@ def force(run: RunData, contact: int) -> Figure:
     kind = "" if seen_along else "tangential "
     upper.set_ylabel(f"{kind}force on the slave [force]")
     upper.legend(loc="best")
-    lower.plot(at, forces @ frame.normal, color="black")
-    along = f"force along {frame.normal_name}" if seen_along else "normal force"
-    lower.set_ylabel(f"{along} [force]")
-    lower.set_ylim(bottom=min(0.0, float((forces @ frame.normal).min())))
-    lower.set_xlabel(label)
-    for axes in (upper, lower):
+    for lower in panels[1:]:
+        lower.plot(at, normal, color="black")
+        along = f"force along {frame.normal_name}" if seen_along else "normal force"
+        lower.set_ylabel(f"{along} [force]")
+        lower.set_ylim(bottom=min(0.0, float(normal.min())))
+    panels[-1].set_xlabel(label)
+    for axes in panels:
         _shade(run, axes, at)
         axes.margins(x=0.0)
         axes.grid(alpha=0.3)
