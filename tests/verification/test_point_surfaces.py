@@ -158,3 +158,26 @@ def test_a_point_beyond_the_end_of_a_surface_has_no_foot() -> None:
     disc = make_surface("revolution", point=(0, 0, 0), axis=(0, 0, 1), profile=[0.0, 0, 1.0, 0])
     reached = [foot(disc, np.array([x, 0.0, 0.0])).reached for x in (0.999, 1.0, 1.000001, 1.1)]
     assert reached == [True, True, False, False]
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.3, 0.7, 1.1, 2.0])
+@pytest.mark.parametrize("kind", ["cylinder", "sphere"])
+def test_a_pressure_is_found_at_the_origin(kind: str, turned: float) -> None:
+    """Pressed at the origin, on surfaces about a point farther off by 1e7 penetrations.
+
+    Requirement: any given pressure is found. Source: penetrations are known to rounding of the
+    lengths that a surface is made of. Tolerance: 1e-7, that rounding over the penetration.
+    """
+    c, s = np.cos(turned), np.sin(turned)
+    lead = {"axis": (c, s, 0.1), "radius": np.hypot(0.3, 2.0), "start": (-s, c, 1.0)}
+    if kind == "cylinder":
+        made = make_surface(kind, point=(0.3 * s, -0.3 * c, -2.0), **lead)
+    else:
+        made = make_surface(kind, centre=(0.3 * s, -0.3 * c, -2.0), **lead)
+    law = Interface(made, NormalLaw(penalty=3e5), Adhesion(stiffness=10.0), _ISOTROPIC)
+    x = np.array(foot(made, np.zeros(3)).position)
+    push = Push((1.0, 0.2, 0.0), travel=[0, 1e-6], start=x, pressure=0.06, increments=1)
+    assert np.allclose(drive(law, push).points["pressure"], 0.06, rtol=1e-7)
+
+
+_ISOTROPIC = Friction(coefficients=0.3)

@@ -49,7 +49,7 @@ def _root(
 ) -> Trial:
     """Gap at which `miss` vanishes: positive for more penetration, negative for less."""
     low, high = -np.inf, np.inf  # the gap is in between
-    far = float(np.abs(balance.pose.position).max())
+    far = float(np.abs(balance.pose.position).max()) + balance.interface.surface.extent
     rounding = 4.0 * np.finfo(np.float64).eps * far
     # The penetration before the step; without one there is no scale, and the guess only grows.
     size = max(-balance.pose.foot.gap, 1e-12 * far, 1e-30)
@@ -57,7 +57,7 @@ def _root(
         value, slope, trial = miss(gap)
         if abs(value) <= 1e-13 * target or abs(value) <= -slope * rounding:
             return trial
-        if gap < 0.0 < trial.pose.foot.gap:
+        if gap < -rounding and trial.pose.foot.gap > rounding:
             break  # beyond the centre of curvature
         if value < 0.0:
             high = gap
