@@ -38,6 +38,10 @@ RATIO, LEAST_RATIO = 1e4, 1e3
 EXACT, ROUNDED = 1e-8, 16.0 * float(np.finfo(np.float64).eps)
 #: The same at points that are slaves of several contacts: what makes their multipliers unique.
 SHARED_RATIO = 3e2
+#: Share of its weight below which a point that its master hardly covers is compliant, and how many
+#: times as stiff as the penalties it is where nothing is covered. Its force is to vanish with the
+#: weight: held exactly by next to none it would pull and press in turn.
+FADES, FADED_RATIO = 0.003, 1e4
 #: Tractions that are none, as a share of what the tolerance stands for: 1e-9 of the stiffness of
 #: the bodies times the facet size.
 ROUNDING = 1e-3
@@ -169,7 +173,11 @@ class Multipliers:
         Returns:
             Along the normal and the surface, (n, 2).
         """
-        return np.repeat(np.where(shared, SHARED_RATIO, np.inf)[:, None], 2, axis=1)
+        faded = np.full_like(covered, np.inf)
+        left = 1.0 - covered / FADES
+        np.divide(FADED_RATIO * covered, left, out=faded, where=left > 0.0)
+        each = np.where(shared, np.minimum(SHARED_RATIO, faded), faded)
+        return np.repeat(each[:, None], 2, axis=1)
 
     def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from.
@@ -347,9 +355,10 @@ class Multipliers:
         return given, np.hstack([step.answer.pressure[:, None], force])
 
     def beyond(self, step: ContactTrial) -> Flags:
-        """Points whose pressure, as one of a penalty, stands for more than the tolerance, (n,)."""
-        deep = step.covered * step.answer.pressure / (self._penalties[0] * self.factors[0])
-        return np.asarray(deep > self.limit)
+        """Points that their penalty, or compliance, leaves deeper than the tolerance, (n,)."""
+        share = np.where(step.slight, 1.0, 1.0 - step.left[:, 0])
+        deep = step.covered * share * step.answer.pressure
+        return np.asarray(deep > self.limit * self._penalties[0] * self.factors[0])
 
     def _violation(self, change: Floats, covered: Floats) -> float:
         """Largest penetration or elastic slip over all ranks that a change stands for, length.

@@ -374,6 +374,10 @@ class Trials:
         shared = self.shared.at(self._points.nodes[:, 0])
         slight = self._slivers.left & self.multipliers.exact
         closeness = far if own is None else own.closeness(self.start, answer.pressure, answer.gap)
+        firm = (self._slivers.firm | slight) & self.multipliers.exact
+        rigidity = np.full((len(covered), 2), np.inf)
+        if own is not None:
+            rigidity = own.rigidity(shared, np.where(firm, 1.0, covered))
         return ContactTrial(
             start=self.start,
             answer=answer,
@@ -385,7 +389,7 @@ class Trials:
             immovable=self.immovable & self.multipliers.exact | slight,
             slight=slight,
             covered=covered,
-            rigidity=np.stack([far, far], 1) if own is None else own.rigidity(shared, covered),
+            rigidity=rigidity,
             far=np.linalg.norm(trial.points, axis=1),
             held=self.master.held if self.multipliers.exact else None,
             closeness=closeness,

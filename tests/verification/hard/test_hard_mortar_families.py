@@ -176,14 +176,14 @@ def test_gaps_within_the_tolerance(to_the_end, gap):
 def test_nodes_of_slivers(to_the_end, seed):
     """A corner that digs in comes over a millionth of a node whose gap, extrapolated, is -0.02.
 
-    Requirement: no cut, at most 12 iterations an increment, and the tolerance of the penetration. A
+    Requirement: no cut, at most 13 iterations an increment, and the tolerance of the penetration. A
     multiplier that closes the gap pushes the sliver away, and without it the gap is open again: 160
     to 200 iterations and a cut.
     """
     text = member(seed)
     run = to_the_end(text)
     assert not run.cuts
-    assert max(accepted.iterations for accepted in run.accepted) <= 12
+    assert max(accepted.iterations for accepted in run.accepted) <= 13
     _asked(run)
 
 
