@@ -88,6 +88,31 @@ def test_parts_grow_back_after_a_cut():
     assert control.part == 1.0
 
 
+def test_what_fails_again_and_again_is_tried_more_and_more_seldom():
+    """An increment in which nothing larger than a hundredth of it converges.
+
+    Requirement: it is passed with the cuts that are allowed, failures are less than a tenth of all
+    trials (a larger one after every two that converge would end at the 51st cut), and as soon as a
+    larger one converges they grow again after two.
+    """
+    control = IncrementControl(Limits(), 1.0)
+    failures = trials = 0
+    while control.increment == 1:
+        trials += 1
+        if control.part > 0.01:
+            failures += 1
+            assert control.cut()
+        else:
+            control.advance(3)
+    assert failures < 0.1 * trials
+    sizes = []
+    while control.increment == 2:
+        sizes.append(control.part)
+        control.advance(3)
+    assert control.wait == 2
+    assert len(sizes) < 30
+
+
 def test_an_increment_that_fails_is_solved_in_parts(fe, monkeypatch):
     """Four iterations are enough for a part of the drag, not for the whole, without soft penalties.
 

@@ -12,8 +12,11 @@ from anisocontact.contact.multiplier_schemes import USUAL
 CUT = 0.25
 #: What a part grows by.
 GROWTH = 2.0
-#: Parts in a row that have to converge before the next one grows.
-STREAK = 2
+#: Parts in a row that have to converge before the next one grows; at most, where what they grow to
+#: has failed again and again: each time twice as many.
+STREAK, LONGEST_STREAK = 2, 16
+#: Times what a size may be short of another one to count as large: parts fill an increment evenly.
+SAME = 1.1
 #: Share of an increment at which smaller sub-increments are not likely to help.
 SMALL = 0.01
 #: Newton iterations beyond which a part was hard enough not to grow.
@@ -33,6 +36,8 @@ class IncrementControl:
         done: Share of it that is done.
         last: Size of the last part that converged, 0 at the start of a step.
         streak: Parts in a row that converged.
+        failed: Size of the last part that failed, 0 where one as large has converged since.
+        wait: Parts in a row that have to converge before one is as large as that again.
         cuts: Number of cuts within this increment.
         relaxed: Whether penalties held in the last part, as no multipliers were found.
         way: Scheme that led to the multipliers of the last part, see `multiplier_schemes`.
@@ -54,6 +59,8 @@ class IncrementControl:
     done: float = 0.0
     last: float = 0.0
     streak: int = 0
+    failed: float = 0.0
+    wait: int = STREAK
     cuts: int = 0
     relaxed: bool = False
     way: str = USUAL
@@ -109,8 +116,12 @@ class IncrementControl:
         self.relaxed, self.way = relaxed, way
         self.done, self.goal = end, 0.0
         self.streak += 1
-        if self.streak >= STREAK and iterations <= HARD:
-            self.size = min(GROWTH * self.size, self.limits.largest)
+        if self._as_large_as_failed(self.last):
+            self.failed, self.wait = 0.0, STREAK
+        larger = min(GROWTH * self.size, self.limits.largest)
+        enough = self.wait if self._as_large_as_failed(larger) else STREAK
+        if self.streak >= enough and iterations <= HARD:
+            self.size = larger
         if end == 1.0:
             self.increment += 1
             self.done = 0.0
@@ -120,7 +131,14 @@ class IncrementControl:
         """Make the next part smaller; False, and nothing changed, where a limit forbids it."""
         if not self.cuttable:
             return False
+        again = self._as_large_as_failed(self.part)
+        self.wait = min(2 * self.wait, LONGEST_STREAK) if again else STREAK
+        self.failed = self.part
         self.size = max(CUT * self.part, self.limits.smallest)
         self.cuts += 1
         self.streak = 0
         return True
+
+    def _as_large_as_failed(self, size: float) -> bool:
+        """Whether a size is that of the last part that failed, or more; parts fill an increment."""
+        return 0.0 < self.failed <= SAME * size
