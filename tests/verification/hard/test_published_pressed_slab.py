@@ -3,7 +3,8 @@
 It sticks beside its plane of symmetry, slips beyond, and lifts off its edge. Source: R. A. Feijoo,
 H. J. C. Barbosa, N. Zouain, Numerical formulations for contact problems with friction, J. Theor.
 Appl. Mech. 7 (1988) 129, where displacements along the floor are means of several codes; they are
-references of V6.04.128 of Code_Aster, from the side inwards at the places below, in mm.
+references of V6.04.128 of Code_Aster, from the side inwards at the places below, in mm. Its
+geometry and loads were read there; the five numbers are from memory, and not read again.
 
 Requirement: these displacements, in the plane and in space, with multipliers and penalties, at
 small and at finite strain; what the loads work is what is stored and dissipated. Tolerances: half

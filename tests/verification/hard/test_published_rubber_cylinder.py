@@ -1,5 +1,7 @@
 """A rubber cylinder pressed between two plates to half of its diameter.
 
+The reference forces are from memory, and not read again in the manual.
+
 Source: T. Sussman, K. J. Bathe, A finite element formulation for nonlinear incompressible elastic
 and inelastic analysis, Comput. Struct. 26 (1987) 357; verification problem 211 of Ansys: radius
 0.2 m, Mooney-Rivlin constants 0.293 and 0.177 MPa, without friction. The force is 250 kN per metre
