@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import os
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -33,20 +34,22 @@ class HistoryTable:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._columns: list[str] = []
-        self._size = self._rows = 0
+        self._size = self._rows = self._sum = 0
 
     def state(self) -> dict[str, Any]:
         """What `resume` needs, as JSON can have it."""
-        return {"columns": self._columns, "size": self._size, "rows": self._rows}
+        state = {"columns": self._columns, "size": self._size, "rows": self._rows}
+        return state | {"sum": self._sum}
 
     def resume(self, state: Mapping[str, Any]) -> None:
         """Go on behind the rows of a state; later ones are cut off.
 
         Raises:
-            InputError: The file has fewer rows than the run has written, or is no table.
+            InputError: The file has fewer rows than the run has written or other ones, or is no
+                table.
         """
         self._columns, self._size = list(state["columns"]), state["size"]
-        self._rows = state["rows"]
+        self._rows, self._sum = state["rows"], state["sum"]
         if not self._size:
             self._path.unlink(missing_ok=True)
             return
@@ -61,9 +64,15 @@ class HistoryTable:
                 f"'{self._path}' has {len(rows)} rows, the run that is to go on has written "
                 f"{self._rows}: put the file back, or run without --restart"
             )
-        if header == self._columns:
+        known = "".join(_line(row[: len(self._columns)]) for row in found[: self._rows + 1])
+        if zlib.crc32(known.encode()) != self._sum:
+            raise InputError(
+                f"'{self._path}' is not as the run that is to go on has written it: "
+                "put the file back, or run without --restart"
+            )
+        if self._path.read_bytes().startswith(known.encode()):
             os.truncate(self._path, self._size)
-        else:  # has got columns since
+        else:  # has got columns since, or other ends of lines
             self._write(header, rows[: self._rows])
 
     def append(self, row: Mapping[str, Any]) -> None:
@@ -78,9 +87,11 @@ class HistoryTable:
         if new:
             self._widen(new)
         text = _line([_shown(values.get(column, math.nan)) for column in self._columns])
+        line = text.encode()
         with self._path.open("r+b") as file:  # one that is gone is not begun without its header
             file.seek(0, os.SEEK_END)
-            self._size += file.write(text.encode())
+            self._size += file.write(line)
+        self._sum = zlib.crc32(line, self._sum)
         self._rows += 1
 
     def _widen(self, new: Sequence[str]) -> None:
@@ -92,8 +103,10 @@ class HistoryTable:
     def _write(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         """Write the table anew, the file replaced whole."""
         self._path.parent.mkdir(exist_ok=True)
+        table = "".join(map(_line, [columns, *rows])).encode()
         with replacing(self._path) as draft:
-            self._size = draft.write_bytes("".join(map(_line, [columns, *rows])).encode())
+            self._size = draft.write_bytes(table)
+        self._sum = zlib.crc32(table)
         self._columns = list(columns)
 
 

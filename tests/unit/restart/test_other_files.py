@@ -156,6 +156,38 @@ def test_restart_with_a_table_that_is_none(
     assert table.read_bytes() == content
 
 
+@pytest.mark.parametrize("where", ["header", "row"])
+def test_restart_with_a_table_that_has_other_numbers(
+    meshed: Path, capsys: pytest.CaptureFixture[str], where: str
+) -> None:
+    """Requirement: results never silently go on behind rows that the run has not written."""
+    assert run(meshed) == 0
+    table = meshed.parent / "out" / "history.csv"
+    header, row, *more = table.read_text().splitlines(keepends=True)
+    other = header.replace("time", "tame") if where == "header" else row.replace("0.0", "0.5", 1)
+    assert other not in (header, row)
+    content = "".join([other, row, *more] if where == "header" else [header, other, *more])
+    table.write_text(content)
+    capsys.readouterr()
+    assert run(meshed, "--restart") == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        f"error: '{table}' is not as the run that is to go on has written it: "
+        "put the file back, or run without --restart"
+    )
+    assert table.read_text() == content
+
+
+def test_restart_with_a_table_that_another_system_has_saved(meshed: Path) -> None:
+    """Requirement: other ends of lines, as a spreadsheet writes them, cut no row apart."""
+    assert run(meshed) == 0
+    table = meshed.parent / "out" / "history.csv"
+    content = table.read_bytes()
+    table.write_bytes(content.replace(b"\n", b"\r\n"))
+    assert run(meshed, "--restart") == 0
+    assert table.read_bytes() == content
+
+
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "crlf"])
 def test_restart_with_a_case_file_of_another_system(meshed: Path, encoding: str) -> None:
     """Requirement: a mark of the byte order, or other ends of lines, keep no run from going on."""
