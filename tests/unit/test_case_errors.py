@@ -20,6 +20,9 @@ WRONG = [
     ("order = 1", "oder = 1", "mesh.box.block.oder", 'did you mean "order"?'),
     ("coefficients", "coeficients", "contact[0].friction.coeficients", '"coefficients"?'),
     ("[output]", "[outptu]", "outptu", 'did you mean "output"?'),
+    # words, with the near one
+    ("[output]", '[solver]\nstrategy = "condensd"\n[output]', "solver.strategy", "'condensed'?"),
+    ("[[contact]]", '[[contact]]\npass = "morter"', "contact[0].pass", "did you mean 'mortar'?"),
     # numbers: sign, bound, form
     ("[0.3, 0.1]", "[-0.3, 0.1]", "contact[0].friction.coefficients", "[-0.3, 0.1] given"),
     ("[0.3, 0.1]", "[0.3, 0]", "contact[0].friction.coefficients", "> 0"),

@@ -70,6 +70,17 @@ REACTION = 'reaction = "block.top"'
         (REACTION, 'probe = "middle", component = "XX"', "there are: none, it is a number"),
         (REACTION, 'reaction = "block.top", quantity = "stress"', "given without a probe"),
         (", value = 10.0", "", "step[0].until: with reaction one of value is needed"),
+        (
+            f"{REACTION}, ",
+            "",
+            "until: nothing given, one of contact, reaction, displacement, probe ",
+        ),
+        (REACTION, f'probe = "middle", {REACTION}', "until: reaction and probe given, one of"),
+        (
+            f"{REACTION}, value = 10.0",
+            'probe = "middle"',
+            "with von_mises at probe 'middle' one of",
+        ),
         ("value = 10.0", "value = -10.0", "step[0].until.value: -10.0 given without along"),
     ],
 )

@@ -219,3 +219,13 @@ def test_directions_on_neither_side(tmp_path, capsys):
     line = capsys.readouterr().err
     assert "contact[0].friction.directions_on" in line
     assert all(word in line for word in ("base", "slave", "master"))
+
+
+def test_a_side_that_has_directions_which_are_not_given(tmp_path, capsys):
+    """Requirement: what contradicts itself is one line: a body for directions, and none of them."""
+    case = tmp_path / "case.toml"
+    wrong = 'friction = { coefficients = 0.3, directions_on = "slave" }'
+    case.write_text(CASE.replace("friction = { coefficients = [0.3, 0.3] }", wrong))
+    assert main(["check", str(case)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: contact[0].friction.directions_on: given without directions")

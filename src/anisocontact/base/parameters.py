@@ -260,8 +260,11 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
     field = field or p.name
     if p.kind == "choice":
         if not isinstance(given, str) or given not in p.choices:
-            raise InputError(f"{given!r} given, allowed: {', '.join(p.choices)}", field=field)
-        return [float(p.choices.index(str(given)))]
+            near = meant(given, p.choices) if isinstance(given, str) else None
+            hint = f"; did you mean {near!r}?" if near else ""
+            text = f"{given!r} given, allowed: {', '.join(p.choices)}{hint}"
+            raise InputError(text, field=field)
+        return [float(p.choices.index(given))]
     numbers = _numbers(p, given, field)
     if not all(math.isfinite(v) for v in numbers):
         raise InputError(f"{reprlib.repr(given)} given, finite numbers are needed", field=field)

@@ -72,7 +72,8 @@ class Until:
         if sum(getattr(self, name) is not None for name in ("event", "value")) != 1 or (
             self.event is not None and "event" not in allowed
         ):
-            raise InputError(f"with {given[0]} one of {', '.join(allowed)} is needed", "until")
+            place = self.name if self.measure is not None else given[0]
+            raise InputError(f"with {place} one of {', '.join(allowed)} is needed", "until")
         if self.event is not None and self.event not in CONTACT_EVENTS:
             text = f"{self.event!r} given, must be one of {', '.join(CONTACT_EVENTS)}"
             raise InputError(text, "until.event")

@@ -159,6 +159,7 @@ def _contact(
     if contact.apart is not None and not contact.self_contact:
         text = "given without self_contact = true, which it belongs to"
         yield InputError(text, field=f"{place}.apart")
+    yield from _carriers(contact, place)
     if contact.meshed:
         yield from _meshed(case, contact, place)
         return
@@ -172,6 +173,18 @@ def _contact(
         yield InputError(text, field=f"{place}.master")
     elif master is not None:
         yield from _laws(contact, place, master)
+
+
+def _carriers(contact: ContactSection, place: str) -> Iterator[InputError]:
+    """Bodies that are to carry a direction field that is not there."""
+    for law in ("adhesion", "friction", "python"):
+        table = getattr(contact, law)
+        kinds = {} if table is None else type(table).model_fields
+        for key in (key for key in kinds if key.endswith("_on")):
+            field = key.removesuffix("_on")
+            if getattr(table, key) != kinds[key].default and getattr(table, field) is None:
+                text = f"given without {field}, which it says the body of"
+                yield InputError(text, field=f"{place}.{law}.{key}")
 
 
 def _method(contact: ContactSection, place: str) -> Iterator[InputError]:

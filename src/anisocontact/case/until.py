@@ -13,6 +13,8 @@ from anisocontact.case.output import ProbeSection
 from anisocontact.case.quantity import number, shown, word
 from anisocontact.case.section import Section, near
 
+#: Where a value is looked at.
+_PLACES = ("contact", "reaction", "displacement", "probe")
 _EVENTS = "; ".join(f"{name}: {text}" for name, text in CONTACT_EVENTS.items())
 
 
@@ -78,6 +80,10 @@ class UntilSection(Section):
             InputError: There is no such probe, or something that does not go with others.
         """
         given = dict(self)
+        places = [place for place in _PLACES if given[place] is not None]
+        if len(places) != 1:
+            text = f"{' and '.join(places) or 'nothing'} given, one of {', '.join(_PLACES)} needed"
+            raise InputError(text, "until")
         name, quantity, component = (given.pop(k) for k in ("probe", "quantity", "component"))
         if name is None:
             for key, value in (("quantity", quantity), ("component", component)):

@@ -152,7 +152,7 @@ def read_history(path: Path) -> dict[str, npt.NDArray[Any]]:
 
 def _cells(path: Path) -> list[list[str]]:
     """Rows of the file as texts, columns first; one that is being written is left out."""
-    text = path.read_text(encoding="utf-8")
+    text = path.read_bytes().decode("utf-8")
     return list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1])))
 
 

@@ -188,6 +188,19 @@ def test_restart_with_a_table_that_another_system_has_saved(meshed: Path) -> Non
     assert table.read_bytes() == content
 
 
+def test_restart_with_ends_of_lines_in_a_name(meshed: Path) -> None:
+    """Requirement: a name of a step with an end of a line in it stays what it is in the table."""
+    text = meshed.read_text()
+    assert 'name = "press"' in text
+    meshed.write_text(text.replace('name = "press"', r'name = "a\rb\nc"'))
+    assert run(meshed) == 0
+    table = meshed.parent / "out" / "history.csv"
+    content = table.read_bytes()
+    assert b'"a\rb\nc",1' in content
+    assert run(meshed, "--restart") == 0
+    assert table.read_bytes() == content
+
+
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "crlf"])
 def test_restart_with_a_case_file_of_another_system(meshed: Path, encoding: str) -> None:
     """Requirement: a mark of the byte order, or other ends of lines, keep no run from going on."""
