@@ -48,7 +48,7 @@ def _answer(contact: Any) -> np.ndarray:
 def test_classes(name: str, before: tuple[str, ...], now: dict[str, Any]) -> None:
     """The same tractions as those of `Contact`, exactly: nothing else is made."""
     model, law = _model(), ContactLaw(*LAWS)
-    with pytest.warns(DeprecationWarning, match=rf"{name}: take Contact\("):
+    with pytest.warns(DeprecationWarning, match=rf"{name} is now Contact\("):
         kind = getattr(anisocontact.contact, name)
     options = {k: v for k, v in now.items() if k not in {"mortar", "self_contact"}}
     old = kind(model, *before, law=law, **options)

@@ -18,7 +18,8 @@ from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, BoxSpec, Placement, Rotation, build_mesh
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.stepping.energy_watch import CAUSES
+from anisocontact.solver.stepping.energy_watch import Cause
+from anisocontact.surfaces import make_surface
 
 STRATEGIES = ["direct", "condensed", "iterative"]
 
@@ -222,7 +223,7 @@ def test_a_coarse_path_is_a_warning(tmp_path: Any, capsys: Any) -> None:
     energies = summary["energy"]
     assert left["worst_share"] > 0.05
     assert abs(energies["residual"]) > 0.04 * energies["external"]
-    assert left["cause"] in CAUSES
+    assert left["cause"] in list(Cause)
     about = "the balance of energy"
     for text, count in (
         (said.out, 1),
@@ -245,15 +246,37 @@ def test_the_end_of_a_master_is_named(fe: Any) -> None:
     watch.begin()
     energies = dict.fromkeys(("elastic", "regularisation"), 0.0)
     coarse = watch.after(energies | {"external": 1.0, "residual": 0.1}, ran_off=False)
-    assert (coarse.share, coarse.cause) == (0.1, CAUSES[4])
+    assert (coarse.share, coarse.cause) == (0.1, Cause.COARSE)
     off = watch.after(energies | {"external": 2.0, "residual": 0.5}, ran_off=True)
-    assert (off.share, off.cause) == (0.25, CAUSES[0])
+    assert (off.share, off.cause) == (0.25, Cause.RAN_OFF)
     jump = watch.after(
         energies | {"external": 1.0, "regularisation": 0.1, "residual": -0.5}, ran_off=False
     )
-    assert jump.cause == CAUSES[1]
+    assert jump.cause == Cause.JUMPED
     assert jump.share == pytest.approx(0.5 / 3.0)
     assert np.isclose(watch.persistent()[1], 3.0)
+
+
+@pytest.mark.parametrize("way", [0.05, 0.002])
+def test_yield_that_begins_with_contact_is_named(way: float) -> None:
+    """A block without hardening that comes to a plane and is pressed in one increment.
+
+    Requirement: the warning names the material that yields, not the contact that begins as well;
+    of a block that stays elastic nothing is open. Source: a force that grows to its limit on the
+    first part of its way and stays there on the other, s, counts as `F s / 2` for the `F s` that
+    are dissipated. Tolerance: 1 %, the block cannot spread at its top.
+    """
+    model = build_mesh([Body("block", BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2)))])
+    metal = make_material("plastic", E=1000.0, nu=0.3, yield_stress=5.0)
+    floor = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, "block.bottom", floor, Friction(coefficients=0.2))
+    (accepted,) = Solver(Problem(model, {"block": metal}, [contact]), [_press(-way)]).run()
+    energies, imbalance = accepted.energies, accepted.imbalance
+    assert contact.counts()["open"] == 0
+    assert energies["residual"] == pytest.approx(-0.5 * energies["inelastic"], rel=0.01, abs=1e-9)
+    assert imbalance.large == (way > 5.0 / 1000.0)
+    if imbalance.large:
+        assert imbalance.cause == Cause.FLOWED
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

@@ -1,10 +1,12 @@
-"""Public names that have been replaced by standard terms, for one more version."""
+"""Public names of before and what stands for them today, for one more version."""
 
 from __future__ import annotations
 
 import importlib
 import warnings
-from typing import Any
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
 
 #: Names of before and those of today, in the packages that have them.
 RENAMED = {
@@ -12,6 +14,78 @@ RENAMED = {
     "Expanding": "ThermalExpansion",
     "bare": "without_expansion",
     "courses_of": "load_curves",
+}
+
+
+class Replaced(NamedTuple):
+    """A name of before that is no other name of the same today.
+
+    Attributes:
+        package: The package that had it.
+        today: What a script writes instead.
+        made: Takes this package and the arguments of before, and makes what these made.
+    """
+
+    package: str
+    today: str
+    made: Callable[..., Any]
+
+
+def _contact(package: Any, *args: Any, **options: Any) -> Any:
+    return package.Contact(*args, **options)
+
+
+def _self_contact(package: Any, model: Any, group: str, *, law: Any, **options: Any) -> Any:
+    return package.Contact(model, group, group, law, self_contact=True, **options)
+
+
+def _pair_law(
+    package: Any, normal: Any, adhesion: Any, friction: Any, *, evolution: str = "transport"
+) -> Any:
+    made = package.ContactLaw(normal, adhesion, friction, evolution=evolution)
+    made.check_meshed()
+    return made
+
+
+def _python_pair_law(
+    package: Any, normal: Any, law: Any, *, directions: Any = None, directions_on: str = "master"
+) -> Any:
+    own = package.PythonLaw(law, directions=directions, directions_on=directions_on)
+    made = package.ContactLaw(normal, own)
+    made.check_meshed()
+    return made
+
+
+def _python_interface(
+    package: Any,
+    surface: Any,
+    normal: Any,
+    law: Any,
+    *,
+    directions: Any = None,
+    threads: int | None = None,
+) -> Any:
+    own = package.PythonLaw(law, directions=directions)
+    return package.Interface(surface, normal, own, threads=threads)
+
+
+_CONTACT, _INTERFACE = "anisocontact.contact", "anisocontact.interface"
+#: Names of before that are made otherwise today.
+REPLACED = {
+    "FacetContact": Replaced(
+        _CONTACT,
+        'Contact(model, slave, "body.group", law, mortar=False)',
+        partial(_contact, mortar=False),
+    ),
+    "TwoHalfPass": Replaced(_CONTACT, "Contact(..., mortar=True)", partial(_contact, mortar=True)),
+    "SelfContact": Replaced(
+        _CONTACT, "Contact(model, group, group, law, self_contact=True)", _self_contact
+    ),
+    "AnyContact": Replaced(_CONTACT, "Contact", _contact),
+    "MeshedContact": Replaced(_CONTACT, "Contact", _contact),
+    "PairLaw": Replaced(_INTERFACE, "ContactLaw", _pair_law),
+    "PythonInterface": Replaced(_INTERFACE, "Interface with a PythonLaw", _python_interface),
+    "PythonPairLaw": Replaced(_INTERFACE, "ContactLaw with a PythonLaw", _python_pair_law),
 }
 
 
@@ -34,8 +108,12 @@ def renamed(module: str, name: str) -> Any:
         ('LoadCurve', 'Course is now LoadCurve')
     """
     package = importlib.import_module(module)
-    today = RENAMED.get(name, "")
-    if today not in dir(package):
+    replaced = REPLACED.get(name)
+    if replaced is not None and replaced.package == module:
+        today, found = replaced.today, partial(replaced.made, package)
+    elif (today := RENAMED.get(name, "")) in dir(package):
+        found = getattr(package, today)
+    else:
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
     warnings.warn(f"{name} is now {today}", DeprecationWarning, stacklevel=3)
-    return getattr(package, today)
+    return found

@@ -1,8 +1,8 @@
 """Which facets meet what: forces and tangent of contact, history of the slave points."""
 
-import warnings
 from typing import Any
 
+from anisocontact.base.renamed import renamed
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.directions import facet_directions
 from anisocontact.contact.hints import coarse_slaves, doubtful_sides, warn_of
@@ -33,10 +33,4 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    from anisocontact.contact.deprecated import BEFORE
-
-    if name not in BEFORE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    made, today = BEFORE[name]
-    warnings.warn(f"{name}: take {today}", DeprecationWarning, stacklevel=2)
-    return made
+    return renamed(__name__, name)

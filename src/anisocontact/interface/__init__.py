@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from anisocontact.base.renamed import renamed
 from anisocontact.base.statuses import STATUS
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.contact_law import VECTOR_FORMS, AdhesionAndFriction, ContactLaw
@@ -49,55 +49,6 @@ __all__ = [
     "raw_state",
 ]
 
-if TYPE_CHECKING:
-    from anisocontact.anisotropy import DirectionField
-    from anisocontact.laws import Adhesion, Friction, NormalLaw
-    from anisocontact.surfaces import Surface
-
-
-def _python_interface(
-    surface: Surface,
-    normal: NormalLaw,
-    law: TangentialLaw,
-    *,
-    directions: DirectionField | None = None,
-    threads: int | None = None,
-) -> Interface:
-    return Interface(surface, normal, PythonLaw(law, directions=directions), threads=threads)
-
-
-def _pair_law(
-    normal: NormalLaw, adhesion: Adhesion, friction: Friction, *, evolution: str = "transport"
-) -> ContactLaw:
-    made = ContactLaw(normal, adhesion, friction, evolution=evolution)
-    made.check_meshed()
-    return made
-
-
-def _python_pair_law(
-    normal: NormalLaw,
-    law: TangentialLaw,
-    *,
-    directions: DirectionField | None = None,
-    directions_on: str = "master",
-) -> ContactLaw:
-    own = PythonLaw(law, directions=directions, directions_on=directions_on)
-    made = ContactLaw(normal, own)
-    made.check_meshed()
-    return made
-
-
-#: Names of before and what they were, which work for one more version.
-_BEFORE = {
-    "PairLaw": ("ContactLaw", _pair_law),
-    "PythonInterface": ("Interface with a PythonLaw", _python_interface),
-    "PythonPairLaw": ("ContactLaw with a PythonLaw", _python_pair_law),
-}
-
 
 def __getattr__(name: str) -> Any:
-    if name not in _BEFORE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    today, made = _BEFORE[name]
-    warnings.warn(f"{name} is now {today}", DeprecationWarning, stacklevel=2)
-    return made
+    return renamed(__name__, name)

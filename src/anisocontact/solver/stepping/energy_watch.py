@@ -8,6 +8,7 @@ of a coarse path than any force does.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import StrEnum
 
 import numpy as np
 
@@ -22,17 +23,30 @@ from anisocontact.solver.system.reported import Energies
 #: Share of points that begin or end contact or sliding in an increment beyond which they make the
 #: residual.
 MANY = 0.05
-#: What makes a residual, the first that applies to an increment; the last one to the first.
-CAUSES = (
-    "slave points slid off the end of a master",
-    "bodies jumped to another equilibrium",
-    "contact began or ended within increments, more of them are needed where it does",
-    "sliding began or ended within increments, more of them are needed where it does",
-    "too few increments, forces at their ends stand for those on the way; or a body snaps through",
-    "a law or material of your own gives a negative dissipation",
-    "bodies overlapped at the start, what pushes them apart is no work from outside",
-)
-#: What laws and materials turn into heat.
+
+
+class Cause(StrEnum):
+    """What makes a residual; of those before `COARSE` the first that applies to an increment."""
+
+    RAN_OFF = "slave points slid off the end of a master"
+    JUMPED = "bodies jumped to another equilibrium"
+    FLOWED = (
+        "materials yielded or crept within increments, which counts with the stress at their ends: "
+        "more of them are needed where they do"
+    )
+    TOUCHED = "contact began or ended within increments, more of them are needed where it does"
+    SLID = "sliding began or ended within increments, more of them are needed where it does"
+    COARSE = (
+        "too few increments, forces at their ends stand for those on the way; or a body snaps "
+        "through"
+    )
+    #: Whatever else happened.
+    HEAT_FELL = "a law or material of your own gives a negative dissipation"
+    #: Of the first increment.
+    OVERLAPPED = "bodies overlapped at the start, what pushes them apart is no work from outside"
+
+
+#: What laws and materials turn into heat, what materials do last.
 DISSIPATED = ("friction", "viscous", "inelastic")
 #: Share of the residual of an increment from which on dissipation that falls is what made it. One
 #: with the wrong sign leaves twice itself open.
@@ -53,10 +67,10 @@ class EnergyWatch:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._work = self._external = self._residual = 0.0
-        self._regularisation = self._heat = 0.0
+        self._work = self._external = self._residual = self._regularisation = 0.0
+        self._heat = np.zeros(len(DISSIPATED))
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
-        self._parts = np.zeros(len(CAUSES))
+        self._parts = np.zeros(len(Cause))
         self._begun = self._overlap = self.pushed_apart = False
 
     def begin(self) -> None:
@@ -95,34 +109,55 @@ class EnergyWatch:
         before = self._residual, self._external, self._regularisation, self._heat
         self._take(energies)
         self._work += abs(self._external - before[1])
-        left = self._residual - before[0]
-        signs = (ran_off, self._regularisation != before[2], *self._changed(), True)
-        cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
-        if before[3] - self._heat > FELL * abs(left):
-            cause = len(CAUSES) - 2
-        self._parts[cause] += left
+        left, heat = self._residual - before[0], self._heat - before[3]
+        jumped = self._regularisation != before[2]
+        cause = self._cause(left, heat, ran_off=ran_off, jumped=jumped)
+        self._parts[list(Cause).index(cause)] += left
         self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
-        return Imbalance(share, CAUSES[int(np.abs(self._parts).argmax())] if share > 0.0 else "")
+        worst = list(Cause)[int(np.abs(self._parts).argmax())]
+        return Imbalance(share, worst.value if share > 0.0 else "")
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""
-        energies = [self._external, self._residual, self._regularisation, self._heat]
+        energies = [self._external, self._residual, self._regularisation]
         now = [float(self._begun), self._work, *energies]
-        return np.concatenate([now, self._parts, self._counts.reshape(-1)])
+        return np.concatenate([now, self._heat, self._parts, self._counts.reshape(-1)])
 
     def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
-        begun, self._work, self._external, self._residual, *heats = map(float, kept[:6])
+        begun, self._work, self._external, self._residual, self._regularisation = map(
+            float, kept[:5]
+        )
         self._begun = bool(begun)
-        self._regularisation, self._heat = heats
-        self._parts, counted = np.split(kept[6:], [len(CAUSES)])
+        ends = np.cumsum([len(DISSIPATED), len(Cause)])
+        self._heat, self._parts, counted = np.split(kept[5:], ends)
         self._counts = counted.astype(np.int64).reshape(self._counts.shape)
 
     def _take(self, energies: Mapping[str, float]) -> None:
         self._external, self._residual = energies["external"], energies["residual"]
         self._regularisation = energies["regularisation"]
-        self._heat = sum(energies.get(name, 0.0) for name in DISSIPATED)
+        self._heat = np.array([energies.get(name, 0.0) for name in DISSIPATED])
+
+    def _cause(self, left: float, heat: Floats, *, ran_off: bool, jumped: bool) -> Cause:
+        """What made the residual of an increment.
+
+        Forces at its ends leave at most as much open as plastic flow dissipates, where a load is
+        reversed, and half of it where it grows: more than that has another cause, and so may less
+        where friction dissipates more.
+
+        Args:
+            left: The residual of the increment.
+            heat: What was dissipated in it, as `DISSIPATED`.
+            ran_off: Whether slave points left the end of a master in it.
+            jumped: Whether bodies jumped in it.
+        """
+        touched, slid = self._changed()
+        if -float(heat.sum()) > FELL * abs(left):
+            return Cause.HEAT_FELL
+        flowed = heat[-1] >= max(abs(left), heat[0]) and heat[-1] > 0.0
+        signs = (ran_off, jumped, flowed, touched, slid, True)
+        return Cause.OVERLAPPED if self._overlap else list(Cause)[signs.index(True)]
 
     def _share(self, energies: Mapping[str, float]) -> float:
         residual = abs(self._residual)
