@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.solver.stepping.limit_load import PressedPoints, friction_needed, limit
+from anisocontact.solver.stepping.limit_load import (
+    PressedPoints,
+    friction_needed,
+    limit,
+    withdrawal,
+)
 
 MU = 0.3
 EVERY = np.eye(6)
@@ -142,3 +147,35 @@ def test_friction_that_is_needed_follows_its_ellipse() -> None:
     needed = friction_needed(points, EVERY, load)
     assert needed == pytest.approx(np.hypot(c / 0.4, s / 0.2), rel=6e-3)
     assert friction_needed(points, EVERY, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) == np.inf
+
+
+@pytest.mark.parametrize("load", [(0.0, 1.0), (0.3, 1.0), (0.0, -0.1), (0.0, -2.0)])
+def test_a_wedge_that_is_pulled_out(load: tuple[float, float]) -> None:
+    """A wedge between two walls at 15 degrees that press with 1 each, which has no sliding motion.
+
+    Source: the least of friction over what loads and normal forces work, of all translations in
+    its plane that go into no wall, by brute force; pulled along its middle that is
+    `2 mu cos a / (F + 2 sin a)`. Tolerance: the polygon around the friction circle. Of one that is
+    pressed in nothing is found.
+    """
+    lean = np.radians(15.0)
+    normal = np.array([[-np.cos(lean), np.sin(lean), 0.0], [np.cos(lean), np.sin(lean), 0.0]])
+    wedge = _points(np.zeros((2, 3)), normal, np.ones(2))
+    force = np.array([*load, 0.0, 0.0, 0.0, 0.0])
+    assert limit(wedge, EVERY[:2], force) is None
+    found = withdrawal(wedge, EVERY[:2], force)
+    angle = np.linspace(0.0, 2.0 * np.pi, 36001)
+    way = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    work = way @ (force[:3] + normal.sum(axis=0))
+    free = (way @ normal.T >= -1e-9).all(axis=1) & (work > 0.0)
+    if not free.any():
+        assert found is None
+        return
+    assert found is not None
+    tangential = way[free, None] - (way[free] @ normal.T)[..., None] * normal
+    held = MU * np.linalg.norm(tangential, axis=2).sum(axis=1) / work[free]
+    assert found.held == pytest.approx(held.min(), rel=0.006)
+    if load == (0.0, 1.0):
+        assert found.held == pytest.approx(
+            2.0 * MU * np.cos(lean) / (1.0 + 2.0 * np.sin(lean)), rel=0.006
+        )

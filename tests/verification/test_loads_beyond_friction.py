@@ -13,8 +13,8 @@ from tests.verification.test_sides_kept import ANGLE, CLAMP, MU, _laws
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
-from anisocontact.interface import ContactLaw, Interface
-from anisocontact.laws import Friction
+from anisocontact.interface import Augmentation, ContactLaw, Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, PlaneStrain, build_box, build_mesh, make_shape
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Cut, Problem, Solver, Step, StoppedError
@@ -174,3 +174,49 @@ def test_an_increment_is_not_cut_on_and_on_where_nothing_could_hold_a_body() -> 
     with pytest.raises(StoppedError, match="no forces where body 'bar' touches"):
         list(Solver(problem, [step]).run(on_cut=cuts.append))
     assert len(cuts) == 2
+
+
+LEAN = np.radians(15.0)
+
+
+@pytest.mark.parametrize("method", [None, Augmentation()], ids=["penalty", "multipliers"])
+@pytest.mark.parametrize(
+    ("reached", "asked", "said"), [(0.53, 6.0, True), (0.53, 0.535, False), (0.0, 6.0, False)]
+)
+def test_a_wedge_that_is_pulled_out_by_more_than_friction_holds_is_told(
+    reached: float, asked: float, said: bool, method: Augmentation | None
+) -> None:
+    """Half a wedge that is pressed in by 5, let go, and pulled to 97 % of the limit.
+
+    Requirement: a part that fails with a load beyond the limit tells what drives it out, and what
+    friction holds, and nothing below 97 % or with a load that is held. Source: friction holds
+    `mu N cos a` along the middle, loads and normal forces drive it with `F + N sin a`. Tolerance:
+    the four digits that are told, and the polygon around the friction circle.
+    """
+    spec = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(4, 4))
+    model = build_mesh([Body("half", spec)], idealisation=PlaneStrain())
+    x = model.mesh.geometry.x
+    x[:, 0] *= 1.0 + np.tan(LEAN) * x[:, 1]
+    wall = make_surface("plane", point=(1, 0, 0), normal=(-np.cos(LEAN), np.sin(LEAN), 0))
+    law = ContactLaw(NormalLaw(penalty=1e5), Adhesion(stiffness=1e5), Friction(coefficients=0.4))
+    contact = Contact(model, "half.right", wall, law, mortar=True, augmentation=method)
+    steel = {"half": make_material("linear-elastic", E=1000.0, nu=0.3)}
+    problem = Problem(model, steel, [contact])
+    middle = {"half.left": {"x": 0.0}}
+    in_and_out = (("in", 1, -5.0), ("off", 2, 0.0), ("near", 2, reached))
+    steps = [Step(name, n, middle, force={"half.top": {"y": f}}) for name, n, f in in_and_out]
+    for _ in Solver(problem, steps).run():
+        pass
+    out = Step("out", 1, middle, force={"half.top": {"y": asked}})
+    problem.begin(out)
+    told = Failures(problem, []).hint(out, RunPosition.beginning(0, 0.0, Limits()), 1)
+    if not said:
+        assert told == ""
+        return
+    force, _ = contact.resultant()
+    pressed = force @ [-np.cos(LEAN), np.sin(LEAN), 0.0]
+    pattern = r"come to ([\d.]+) along \(0, 1, 0\), and friction holds ([\d.]+) there at most"
+    ((drives, holds),) = re.findall(pattern, told)
+    assert float(drives) == pytest.approx(asked + pressed * np.sin(LEAN), rel=1e-3)
+    assert float(holds) == pytest.approx(0.4 * pressed * np.cos(LEAN), rel=1e-3)
+    assert "points that touch slip in 'half.right'" in told

@@ -20,6 +20,7 @@ from anisocontact.solver.stepping.overload import (
     too_much_load,
     unbalanced,
 )
+from anisocontact.solver.stepping.pulled_out import pulled_out
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.solver.system.problem import Problem
@@ -93,4 +94,5 @@ class Failures:
         end, now = place.control.increment / step.increments, place.reached(step)
         found = too_much_load(self._problem, end, now) or exhausted(self._problem, now)
         found = found or far_beyond(self._problem, end, now)
-        return found or unbalanced(self._problem, end, now)
+        found = found or unbalanced(self._problem, end, now)
+        return found or pulled_out(self._problem, end, now)

@@ -115,6 +115,51 @@ def limit(points: PressedPoints, motions: Floats, load: Floats) -> Limit | None:
     return Limit(mixed @ slides, held)
 
 
+def withdrawal(points: PressedPoints, motions: Floats, load: Floats) -> Limit | None:
+    """The motion with the least margin of those in which no point moves into what it touches.
+
+    A wedge that is pulled out opens as it slides, so that it has no sliding motion. Normal forces
+    fall as it goes: those of now hold more than any that come.
+
+    Args:
+        points: Where the body is pressed on.
+        motions: Motions that nothing but contact holds, orthonormal, (k, 6).
+        load: Force, and moment about the centre over the size, (6,).
+
+    Returns:
+        None where loads and normal forces do not work on any, or there are too many points.
+    """
+    along = points.velocities(motions)
+    normal = np.einsum("ni,nik->nk", points.normal, along)
+    driven = motions @ load + points.force @ normal
+    size, count = float(np.linalg.norm(driven)), len(points.force)
+    if count > FEW or size <= NONE * np.linalg.norm(load):
+        return None
+    rubs = np.einsum("njc,nck->njk", _polygons(points), along).reshape(-1, len(motions))
+    speeds = scipy.sparse.kron(scipy.sparse.eye(count), np.ones((CORNERS, 1)))
+    found = scipy.optimize.linprog(
+        np.concatenate([np.zeros(len(motions)), points.force]),
+        A_ub=scipy.sparse.block_array([[rubs, -speeds], [-normal, None]]).tocsr(),
+        b_ub=np.zeros(len(rubs) + count),
+        A_eq=np.concatenate([driven / size, np.zeros(count)])[None],
+        b_eq=[1.0],
+        bounds=[(None, None)] * len(motions) + [(0.0, None)] * count,
+    )
+    if not found.success:
+        return None
+    mixed = found.x[: len(motions)] / size
+    held = np.linalg.norm(np.einsum("nij,njk,k->ni", points.friction, along, mixed), axis=1)
+    return Limit(mixed @ motions, float(points.force @ held))
+
+
+def _polygons(points: PressedPoints) -> Floats:
+    """Largest forces of friction over the normal force, corners around its ellipse, (n, j, 3)."""
+    _, widths, axes = np.linalg.svd(points.friction)
+    turns = 2.0 * np.pi * (np.arange(CORNERS) + 0.5) / CORNERS
+    corners = np.column_stack([np.cos(turns), np.sin(turns)]) / np.cos(np.pi / CORNERS)
+    return np.asarray(np.einsum("ji,ni,nic->njc", corners, widths[:, :2], axes[:, :2]))
+
+
 def friction_needed(points: PressedPoints, motions: Floats, load: Floats) -> float:
     """How many times the friction it takes for any forces at points to balance loads.
 
@@ -133,10 +178,7 @@ def friction_needed(points: PressedPoints, motions: Floats, load: Floats) -> flo
     size = float(np.linalg.norm(driven))
     if len(points.force) > FEW or size <= NONE * np.linalg.norm(load):
         return 1.0
-    along, (_, widths, axes) = points.velocities(motions), np.linalg.svd(points.friction)
-    turns = 2.0 * np.pi * (np.arange(CORNERS) + 0.5) / CORNERS
-    corners = np.column_stack([np.cos(turns), np.sin(turns)]) / np.cos(np.pi / CORNERS)
-    rubs = np.einsum("ji,ni,nic->njc", corners, widths[:, :2], axes[:, :2])
+    along, rubs = points.velocities(motions), _polygons(points)
     works = [
         np.einsum("ni,nik->kn", points.normal, along),
         np.einsum("njc,nck->knj", rubs, along).reshape(len(motions), -1),

@@ -16,7 +16,6 @@ import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
-from anisocontact.laws import Friction
 from anisocontact.solver.stepping.chains import chains
 from anisocontact.solver.stepping.driven import Driven, deformable, driven
 from anisocontact.solver.stepping.limit_load import (
@@ -26,6 +25,7 @@ from anisocontact.solver.stepping.limit_load import (
     friction_needed,
     limit,
 )
+from anisocontact.solver.stepping.pressed_points import moves, pressed_points, shown, slipping
 from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
 from anisocontact.solver.system.problem import Problem
 
@@ -53,8 +53,6 @@ MANY = 2
 CLOSER, LESS_SURE = 0.05, 0.25
 #: Share of a motion that is a turn from which on a moment is told.
 TURNS = 0.1
-#: Share of the loads that presses a body and is what rounding of its place makes of a touch.
-ROUNDED = 1e-9
 #: Share of the loads that friction holds which is no friction at all.
 NOTHING = 1e-9
 #: What can be done about it, and where there is no friction.
@@ -124,7 +122,7 @@ def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
     """
     found = []
     for body in deformable(problem, fraction, now):
-        points, touched, opened = _pressed(problem, body)
+        points, touched, opened = pressed_points(problem, body)
         if points is None or touched or opened:
             continue
         needed = friction_needed(points, body.motions, body.load)
@@ -133,7 +131,7 @@ def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
                 f"no forces where {body.name} touches balance the loads on it: it would take "
                 f"{needed:.3g} times the friction; {WITHOUT}"
             )
-            found.append(Overload(text, True, not _moves(problem)))
+            found.append(Overload(text, True, not moves(problem)))
     return found
 
 
@@ -211,7 +209,7 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
         over: Load over the limit of friction that is too much.
         soon: Whether the loads are those of later increments.
     """
-    points, touched, opened = _pressed(problem, body)
+    points, touched, opened = pressed_points(problem, body)
     by_load = None if points is None else _pressed_by_load(body, points)
     if points is None or not (touched or by_load):
         return None
@@ -229,10 +227,10 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     # the load says how much presses a body, and not where: enough for translations
     shifted = None if soon or by_load is None else limit(by_load, _shifts(body), body.load)
     exact = shifted is not None and shifted.held * over < 1.0
-    certain = not opened and (exact or (near and not _moves(problem)))
+    certain = not opened and (exact or (near and not moves(problem)))
     when = " at the end of the step" if soon else ""
     least = "" if certain else ", with what presses on it now"
-    slips = _slipping(body) if touched else ""
+    slips = slipping(body) if touched else ""
     cure = CURE if rubs else WITHOUT
     text = f"{_line(body, then, found, when)}{least}: {cure}{slips}"
     told, grown = near or certain, float(then.force.sum() / points.force.sum())
@@ -245,53 +243,10 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     return Overload(text, told and good, certain and good, further, pressed, far and good)
 
 
-def _moves(problem: Problem) -> bool:
-    """Whether motion is prescribed along the step, which may press bodies on; collective."""
-    supports = problem.comm.allreduce(int(not problem.supports.rest))
-    return bool(supports > 0 or not problem.rigid.rest)
-
-
 def _shifts(body: Driven) -> Floats:
     """Those of its motions that are translations, orthonormal, (j, 6)."""
     mixed = scipy.linalg.null_space(body.motions[:, 3:].T)
     return np.asarray(mixed.T @ body.motions)
-
-
-def _pressed(problem: Problem, body: Driven) -> tuple[PressedPoints | None, bool, bool]:
-    """Where contact presses on a body, on all ranks; where it touches before anything presses.
-
-    Returns:
-        The points, with their areas for forces before anything presses; None where the law is one
-        in Python. Whether something presses. Whether some of its contacts do not.
-    """
-    found = []
-    for contact, side in body.contacts:
-        friction = contact.interface.tangential.friction
-        if friction is None:
-            return None, False, False
-        last, areas = contact.last, contact.areas
-        rows = [
-            (contact.points - body.centre) / body.size,
-            side * last.normal,
-            areas * last.pressure,
-            areas * contact.meeting(),
-            _resistance(friction, last.directions_friction, last.normal),
-        ]
-        every = problem.comm.allgather(rows)
-        found.append([np.concatenate(column) for column in zip(*every, strict=True)])
-    if not found:
-        return None, False, False
-    columns = zip(*found, strict=True)
-    arms, normal, force, area, rubs = (np.concatenate(column) for column in columns)
-    touched = bool(force.sum() > ROUNDED * np.linalg.norm(body.load))
-    weight = force if touched else area
-    closed = weight > 0.0
-    if not closed.any():
-        return None, False, False
-    which = 2 if touched else 3
-    opened = not all(part[which].any() for part in found)
-    kept = PressedPoints(arms[closed], normal[closed], weight[closed], rubs[closed])
-    return kept, touched, opened
 
 
 def _pressed_by_load(body: Driven, points: PressedPoints) -> PressedPoints | None:
@@ -317,29 +272,6 @@ def _pressed_on(body: Driven, points: PressedPoints) -> PressedPoints:
     return replace(points, force=points.force * grown)
 
 
-def _resistance(friction: Friction, axes: Floats, normal: Floats) -> Floats:
-    """`PressedPoints.friction` at points with these axes and normals.
-
-    Dual to `T . F T <= N^2` with F of two coefficients [Konyukhov Schweizerhof 2006, eq. (43)]; of
-    two surfaces the most that there is in any direction.
-    """
-    values = friction.named[1]
-    across = np.eye(3) - np.einsum("ni,nj->nij", normal, normal)
-    if friction.frictionless:
-        return np.zeros_like(across)
-    if "coefficients" not in values:
-        first, *others = values["alpha"]
-        return np.asarray((first + sum(max(value, 0.0) for value in others)) * across)
-    first, second = values["coefficients"]
-    if first == second:
-        return np.asarray(first * across)
-    found: Floats = np.zeros(across.shape)
-    found[:, :2] = axes * np.array([first, second])[:, None]
-    unknown = ~axes.any(axis=(1, 2))
-    found[unknown] = max(first, second) * across[unknown]
-    return found
-
-
 def _line(body: Driven, points: PressedPoints, found: Limit, when: str) -> str:
     """What the loads come to, and what friction holds, along the motion that it holds least."""
     shift, turn = np.split(found.motion, 2)
@@ -351,29 +283,14 @@ def _line(body: Driven, points: PressedPoints, found: Limit, when: str) -> str:
         force = free @ body.load[:3]
         force = force - (force @ normal) * normal
         size = float(np.linalg.norm(force))
-        what = f"{size:.4g} along {_shown(force / size)}"
+        what = f"{size:.4g} along {shown(force / size)}"
         share = f", {found.held * size / pressed:.4g} of the normal force {pressed:.4g}"
     else:
         spin = turn / body.size
         size = 1.0 / float(np.linalg.norm(spin))
         through = body.centre + np.cross(spin, shift) / (spin @ spin)
-        what = f"a moment of {size:.4g} about {_shown(spin * size)} through {_shown(through)}"
+        what = f"a moment of {size:.4g} about {shown(spin * size)} through {shown(through)}"
     return (
         f"the loads on {body.name} come to {what}{when}, and friction holds "
         f"{found.held * size:.4g} there at most{share}"
     )
-
-
-def _slipping(body: Driven) -> str:
-    """How many points slip in the last state."""
-    told = []
-    for contact, _ in body.contacts:
-        counts = contact.counts()
-        closed = counts["stick"] + counts["slip"]
-        if closed:
-            told.append(f"{counts['slip']} of {closed} points that touch slip in {contact.name!r}")
-    return f"; {', '.join(told)}" if told else ""
-
-
-def _shown(vector: Floats) -> str:
-    return "(" + ", ".join(f"{v + 0.0:g}" for v in vector.round(2) + 0.0) + ")"
