@@ -125,6 +125,17 @@ def test_dissipation_that_falls_is_the_cause(
     assert again.persistent().tolist() == made.persistent().tolist()
 
 
+def test_a_run_that_goes_on_knows_what_was_dissipated(watch: Any) -> None:
+    """Requirement: dissipation that falls, and is positive still, is seen by who goes on, too."""
+    made, _ = watch()
+    energies = {"external": 10.0, "residual": 0.0, "regularisation": 0.0}
+    made.after(energies | {"inelastic": 5.0}, ran_off=False)
+    again = EnergyWatch(made._problem)
+    again.restore(made.persistent())
+    found = again.after(energies | {"residual": 1.0, "inelastic": 4.0}, ran_off=False)
+    assert found.cause == Cause.HEAT_FELL
+
+
 @pytest.mark.parametrize(
     ("numbers", "heat", "jumped", "cause"),
     [
