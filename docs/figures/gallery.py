@@ -170,7 +170,7 @@ def belt(folder: Path) -> Path:
     scene.rigid(pv.Cylinder(**axis, radius=49.9, height=50, resolution=120))
     for name in ("along", "across"):
         stress(scene, name, "YlOrRd", 3.0)
-    for name, y, shift in (("along", -9, -12), ("across", 9, 2)):
+    for name, y, shift in (("along", -9, -12), ("across", 9, 5)):
         pulled = -scene.history[f"reactions.{name}.head.z"][-1] / 5.0
         scene.arrow((50.3, y, -24), (0, 0, -8 * pulled))
         scene.label((50.3, y + shift, -30 - 4 * pulled), f"{pulled:.2f}", ACCENT)

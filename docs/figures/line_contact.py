@@ -63,8 +63,9 @@ def draw_rolling(axes: Axes) -> None:
     """Shear of a cylinder that rolls under traction at 6 facets."""
     found = friction.rolled(Line, 6)
     print(f"rolling, Q / mu P = {found.share:.2f}: {100.0 * found.largest:.2f} %")
-    order = np.argsort(found.place)
-    axes.plot(found.place[order], found.exact[order], color="0.4", label="Carter")
+    x = np.linspace(-1.3, 1.3, 1301)
+    exact = friction.closed_form(x, found.share, forward=True)
+    axes.plot(x, exact, color="0.4", label="Carter")
     axes.plot(found.place, found.found, "o", color="tab:blue", label="nodes")
     axes.set(xlim=(-1.3, 1.3), ylim=(0.0, None), xlabel="$x/a$", ylabel="$q/\\mu p_0$")
     axes.legend(fontsize="small")

@@ -41,6 +41,20 @@ DOWN = {"x": 0.0, "y": -2.5 / RADIUS}
 WAY, CREEP = 4.0, 0.2 / RADIUS
 
 
+def closed_form(x: Floats, share: float, forward: bool) -> Floats:
+    """Shear over `mu p_0` [Carter 1926] of what rolls forward, or rests [Cattaneo 1938].
+
+    Args:
+        x: Places over the half width of the contact, (n,).
+        share: Q / mu P.
+        forward: Whether it rolls.
+    """
+    c = np.sqrt(1.0 - share)
+    off = x - (1.0 - c if forward else 0.0)
+    sticks = c * np.sqrt(np.maximum(1.0 - (off / c) ** 2, 0.0))
+    return np.asarray(np.sqrt(np.maximum(1.0 - x**2, 0.0)) - sticks)
+
+
 @dataclass(frozen=True)
 class Shared(Shear):
     """Shear of a contact that carries a share of what friction can.
@@ -60,8 +74,7 @@ class Shared(Shear):
         share = float(abs(force[0]) / (MU * force[1]))
         x, c = (contact.points[:, 0] - middle) / a, np.sqrt(1.0 - share)
         off = x - (1.0 - c if forward else 0.0)
-        exact = np.sqrt(np.maximum(1.0 - x**2, 0.0))
-        exact -= c * np.sqrt(np.maximum(1.0 - (off / c) ** 2, 0.0))
+        exact = closed_form(x, share, forward)
         found = np.sign(force[0]) * contact.last.traction[:, 0] / limit
         told = (np.abs(x) <= 0.95) & (np.abs(np.abs(off) - c) > 0.5 / (n * a))
         sticks = contact.last.status == 1, np.abs(off) < c
