@@ -95,6 +95,11 @@ class Heated(Idealisation):
         self._strain = expands
         self.stretch: Any = 1.0 if self._small else 1.0 + expands
 
+    @property
+    def temperature(self) -> float:
+        """Temperature over that without stress."""
+        return float(self._temperature.value)
+
     def set_temperature(self, value: float) -> None:
         """Take over the temperature over that without stress."""
         self._temperature.value = value

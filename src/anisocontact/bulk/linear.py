@@ -120,6 +120,10 @@ class LinearBulk:
         """Linear materials dissipate nothing."""
         return 0.0
 
+    def heating(self, start: Vec, u: Vec, before: Mapping[str, float]) -> tuple[float, float]:
+        """Nothing: bodies that expand with their temperature are no linear ones."""
+        return 0.0, 0.0
+
     def set_time(self, dt: float) -> None:
         """Take over a time increment, which changes nothing."""
 

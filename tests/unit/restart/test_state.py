@@ -100,6 +100,12 @@ def test_points_of_cells_that_meet_find_their_own(tmp_path):
 VARIANTS = {
     "augmented": {"normal = { penalty = 1e5 }": 'method = "augmented"'},
     "finite strain": {'model = "linear-elastic"': 'model = "neo-hookean"'},
+    "heated": {
+        'model = "linear-elastic"': 'model = "linear-elastic"\nexpansion = 1e-3',
+        'displacement = { "block.top" = { x = 0.02': (
+            'temperature = { block = 3 }\ndisplacement = { "block.top" = { x = 0.02'
+        ),
+    },
     "unsupported": {
         "origin = [0, 0, 0]": "origin = [0, 0, 0.05]",
         'displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }': (

@@ -164,7 +164,7 @@ class ContactWork:
         held = not (parts.attached or any(parts.stabilisation.stiffnesses))
         local = np.array([not parts.supports.rest, not parts.loads.rest], dtype=np.int64)
         moving, changing = self._comm.allreduce(local).tolist()
-        moves = moving > 0 or not parts.rigid.rest
+        moves = moving > 0 or not parts.rigid.rest or parts.assembly.bodies.heats
         return bool(held and moves and changing == 0 and parts.rigid.loads_rest)
 
     def _leapt(self, prescribed: bool) -> bool:

@@ -22,6 +22,11 @@ class EndsWork:
     missed: float
 
     @classmethod
+    def of(cls, before: float, after: float) -> EndsWork:
+        """That of which each end makes a number."""
+        return cls(0.5 * (before + after), 0.5 * abs(after - before))
+
+    @classmethod
     def between(cls, before: Floats, after: Floats, way: Floats) -> EndsWork:
         """That of forces before and after on their ways, all of them (n,)."""
         mean = 0.5 * (before + after) @ way

@@ -331,6 +331,7 @@ class Problem(ComposedSystem, Uncopied):
             x: All unknowns of a state in equilibrium.
         """
         ends, nodal = self.reduction.commit(x), self.reduction.nodal(x)
+        ends += EndsWork.of(*self.assembly.bodies.heating(nodal))
         self.flowed = ends if self.stabilisation.flow.flows else None
         work = ends.mean + self._contact_work.of_overlaps()
         so_far = self._accepted.work + work

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 
 from anisocontact.base.array_types import Floats
@@ -109,14 +110,16 @@ class ReportedSystem(AssembledSystem):
         """Energies of the accepted state, force times length.
 
         Returns:
-            "external" work of supports and loads since the start (trapezoidal rule), stored
-            "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
+            "external" work of supports, loads and temperatures since the start (trapezoidal rule),
+            stored "elastic" (bodies), "adhesion" and "normal" (penalty) energy, not a number where
+            a material or a law tells none, energy dissipated by
             "friction" and "viscous" laws, energy of "stabilisation", what the viscous
             "regularisation" has dissipated on jumps and, where there are any, energy of "springs"
             and elastic supports, what materials have dissipated, "inelastic", and "residual", what
             is left of "external" less all others: the error of the increments.
         """
-        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
+        elastic = self.reduction.elastic() if self.assembly.bodies.bulk.stores else math.nan
+        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": elastic}
         stored |= self.assembly.bodies.dissipated()
         stored |= self.assembly.acting.energies(self._bodies.nodal)
         work = self._accepted.work

@@ -59,6 +59,9 @@ class Bodies(Term):
         self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
         self._temperatures = {name: PrescribedComponents(1) for name in bulk.heated}
+        #: Temperatures and displacement of the accepted state, where bodies are heated.
+        self._heat = dict.fromkeys(bulk.heated, 0.0)
+        self._start: Vec | None = self._u.copy() if bulk.heated else None
         self.again, self.largest = False, 0.0
         self._inner = np.zeros(0)
         #: Displacement and forces at the last tangent.
@@ -142,16 +145,42 @@ class Bodies(Term):
     @override
     def accept(self, u: Floats) -> float:
         self.bulk.commit(self._owned(u))
+        self._heat = self._temperatures_now()
+        if self._start is not None:
+            self._owned(u).copy(self._start)
         self._take_size(u)
         return 0.0
 
+    @property
+    def heats(self) -> bool:
+        """Whether temperatures are others than in the accepted state."""
+        return self._heat != self._temperatures_now()
+
+    def heating(self, u: Floats) -> tuple[float, float]:
+        """Energy that changes of temperature give at the accepted displacement, and at this one.
+
+        Over all ranks, force times length.
+        """
+        if self._start is None:
+            return 0.0, 0.0
+        return self.bulk.heating(self._start, self._owned(u), self._heat)
+
+    def _temperatures_now(self) -> dict[str, float]:
+        return {name: body.temperature for name, body in self.bulk.heated.items()}
+
     @override
     def persistent(self) -> Arrays:
-        return {"bodies.largest": np.array(self.largest)}
+        own = {"bodies.largest": np.array(self.largest)}
+        if self._heat:
+            own["bodies.temperatures"] = np.array([*self._heat.values()])
+        return own
 
     @override
     def restore(self, kept: Arrays) -> None:
         self.largest = float(kept["bodies.largest"])
+        if self._heat:
+            values = kept["bodies.temperatures"].tolist()
+            self._heat = dict(zip(self._heat, values, strict=True))
 
     @override
     def histories(self) -> list[Arrays]:
@@ -161,6 +190,8 @@ class Bodies(Term):
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for history in self.bulk.histories.values():
             history.restore(next(kept))
+        if self._start is not None:
+            self._owned(u).copy(self._start)
         self._take_size(u)
 
     def _take_size(self, u: Floats) -> None:

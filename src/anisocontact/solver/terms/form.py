@@ -84,6 +84,10 @@ class FormBulk:
         """Unknown as well."""
         return 0.0
 
+    def heating(self, start: Vec, u: Vec, before: Mapping[str, float]) -> tuple[float, float]:
+        """Nothing: temperatures are those of the form."""
+        return 0.0, 0.0
+
     def set_time(self, dt: float) -> None:
         """Nothing: the form has its own time."""
 
