@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from anisocontact.bulk import PLASTIC_STRAIN
 from anisocontact.contact.multiplier_schemes import SLENDER
 from anisocontact.mesh.slenderness import slenderness
 from anisocontact.solver.system.problem import Problem
@@ -16,7 +17,8 @@ def bend(problem: Problem) -> bool:
 
     A slender body at finite strain turns by much of what a correction moves it, and that leaves
     gaps which usual penalties take for a contact that opens: nothing would hold it then. The
-    contacts learn whether it is so, and whether any body is slender, however it is held.
+    contacts learn whether it is so, whether any body is slender, however it is held, and whether
+    one may yield.
 
     Args:
         problem: The problem, in a step.
@@ -25,6 +27,7 @@ def bend(problem: Problem) -> bool:
     follows = SLENDER in contacts.ways and not problem.linear
     contacts.slender = follows and _slender(problem, _of_contacts(problem))
     contacts.bends = contacts.slender and _slender(problem, _held_by_contact(problem))
+    contacts.plastic = not _plastic(problem).isdisjoint(_of_contacts(problem))
     return contacts.bends
 
 
@@ -42,6 +45,12 @@ def _slender(problem: Problem, bodies: set[str]) -> bool:
     faces = problem.rigid.faces
     kept = set() if faces is None else {face.group.split(".")[0] for face in faces.faces}
     return slenderness(problem.model, bodies - kept) > BENDS
+
+
+def _plastic(problem: Problem) -> set[str]:
+    """Bodies whose material remembers a plastic strain."""
+    histories = problem.bulk.histories.items()
+    return {body for body, history in histories if PLASTIC_STRAIN in history.variables}
 
 
 def _of_contacts(problem: Problem) -> set[str]:

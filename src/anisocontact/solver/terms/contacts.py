@@ -28,6 +28,7 @@ class Contacts(Term):
         bends: Whether a body that contact alone holds is so slender that it bends before it is
             strained.
         slender: Whether any body with a contact is so slender.
+        plastic: Whether a body with a contact may yield.
     """
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
@@ -37,6 +38,7 @@ class Contacts(Term):
         self.meshed = [contact for contact in self._all if contact.meshed]
         self._smooth = [contact for contact in self._all if not contact.meshed]
         self._dt, self.bends, self.slender = 1.0, False, False
+        self.plastic = False
         self._failed = False
 
     @override
@@ -166,10 +168,13 @@ class Contacts(Term):
     def close_singly(self, sticks: bool) -> bool:
         """Let corrections close one point of a contact at a time; whether they did not before.
 
+        Not where metal yields: a point that closes changes more there than how bodies bend, and
+        other penalties lead on sooner.
+
         Args:
             sticks: Whether points have stuck lately.
         """
-        return any([one.close_singly(sticks) for one in self._trials])
+        return not self.plastic and any([one.close_singly(sticks) for one in self._trials])
 
     def consistent(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
