@@ -136,6 +136,22 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: from_callable(PLANE, lambda x: x * np.nan, **WINDOW),
         "directions: no direction along the surface at x = [0.0, 0.0, 0.0]",
     ),
+    "callable that fails": (
+        lambda: from_callable(PLANE, lambda x: x / "2", **WINDOW),
+        "f: the function failed: test_anisotropy_errors.py, line",
+    ),
+    "callable of words": (
+        lambda: from_callable(PLANE, lambda x: "along", **WINDOW),
+        "directions: 'along' given, an array of real numbers needed",
+    ),
+    "map that fails": (
+        lambda: from_reparametrisation(PLANE, lambda xi: xi / "2", **WINDOW),
+        "jacobian: the function failed: test_anisotropy_errors.py, line",
+    ),
+    "map of another shape": (
+        lambda: from_reparametrisation(PLANE, lambda xi: np.eye(2), **WINDOW),
+        "jacobian: an array of shape (2, 2) for 25 positions given, (25, 2, 2) needed",
+    ),
     "singular map": (
         lambda: from_reparametrisation(PLANE, lambda xi: np.zeros((len(xi), 2, 2)), **WINDOW),
         "jacobian: singular at xi = [0.0, 0.0]",

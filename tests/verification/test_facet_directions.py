@@ -173,10 +173,26 @@ def test_the_field_is_that_of_scattered_points() -> None:
     [
         ("plate.lid", rings, "no facet group 'plate.lid'"),
         ("plate.top", lambda x: x[:, :2], "(144, 2) for 144 positions given, (144, 3)"),
-        ("plate.top", lambda x: np.full_like(x, np.nan), "vectors"),
+        ("plate.top", lambda x: np.full_like(x, np.nan), "f: [nan, nan, nan] at ("),
+        ("plate.top", lambda x: x / "2", "f: the function failed: test_facet_directions.py, line"),
+        ("plate.top", lambda x: "along", "f: 'along' given by the function, an array of real"),
+        ("plate.top", lambda x: x + 1j, "an array of real numbers needed"),
     ],
 )
 def test_bad_input(group: str, f: Any, text: str) -> None:
     with pytest.raises(InputError) as error:
         facet_directions(blocks(4), group, f)
     assert text in str(error.value)
+
+
+def test_a_function_that_changes_what_it_is_given() -> None:
+    """Requirement: samples stay where they are on the facets, whatever a function writes."""
+
+    def away(x: Floats) -> Floats:
+        x -= (0.3, 0.2, 0.0)
+        return x
+
+    model = blocks(4)
+    found, _ = axes(model, facet_directions(model, "plate.top", away))
+    same, _ = axes(model, facet_directions(model, "plate.top", lambda x: x - (0.3, 0.2, 0.0)))
+    assert np.array_equal(found, same)

@@ -172,14 +172,12 @@ def test_wrong_shape_is_said() -> None:
         itf.update(itf.initial_state([[0.0, 0.0, 0.1]]), x)
 
 
-@pytest.mark.parametrize("count", [-1, 1.5, None, True, "2"])
+@pytest.mark.parametrize("count", [-1, 1.5, None, True, "2", 10**9])
 def test_a_number_of_variables_that_is_none_is_one_line(count: object) -> None:
     """As in a case file."""
     law = Coulomb()
     law.internal = count
-    says = (
-        rf"^law: Coulomb\.internal is {count!r}, the number of its own variables needed, 0 or more$"
-    )
+    says = rf"^law: Coulomb\.internal is {count!r}, the number of its own .* 0 to 1000000$"
     with pytest.raises(InputError, match=says):
         PythonLaw(law)
 

@@ -264,3 +264,27 @@ def test_scripts_are_told_as_well() -> None:
     problem = Problem(model, {"bar": make_material("linear-elastic", **HOOKE)})
     with pytest.raises(InputError, match=r"temperature\.bar: no such body"):
         Solver(problem, [Step("heat", 1, HELD, temperature={"bar": 1.0})])
+
+
+@pytest.mark.parametrize(
+    ("profile", "said"),
+    [
+        (lambda x: x / "2", "the function failed: test_thermal_expansion.py, line"),
+        (lambda: 1.0, "the function failed: TypeError"),
+        (lambda x: None, "None given by the function, an array of real numbers needed"),
+        (lambda x: x[0] + 1j, "an array of real numbers needed"),
+        (lambda x: 1.0, "an array of shape () for 64 positions given, (64,) needed"),
+        (lambda x: x[0, :-1], "an array of shape (63,) for 64 positions given, (64,) needed"),
+        (lambda x: np.log(x[0] - x[0]), "-inf at ("),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:divide by zero")
+def test_a_profile_that_is_none(profile: Any, said: str) -> None:
+    """Requirement: what a function of the user's does wrong is one line that names it."""
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+    law = ThermalExpansion(make_material("neo-hookean", E=E, nu=NU), EXPANSION, profile)
+    with pytest.raises(InputError) as error:
+        Problem(model, {"bar": law}, [])
+    assert str(error.value).startswith("material.bar.profile: ")
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)

@@ -10,8 +10,11 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.array_types import Flags, Floats, Pair
+from anisocontact.base.arrays import real
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
+from anisocontact.base.python_file import called
+from anisocontact.base.sampled import sampled
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
@@ -157,7 +160,8 @@ def from_callable(
         'tabulated-grid'
     """
     grid = _Grid(surface, counts, lower, upper)
-    return grid.field(f(surface.position(grid.xi)), interpolation)
+    x = surface.position(grid.xi)
+    return grid.field(called(f, x, who="the function", field="f"), interpolation)
 
 
 @typed
@@ -200,9 +204,7 @@ def from_reparametrisation(
         [0.707107, 0.707107, 0.0]
     """
     grid = _Grid(surface, counts, lower, upper)
-    j = np.asarray(jacobian(grid.xi), dtype=np.float64)
-    if j.shape != (len(grid.xi), 2, 2):
-        raise InputError(f"an array of shape {j.shape} given, (n, 2, 2) needed", field="jacobian")
+    j = sampled(jacobian, grid.xi, (len(grid.xi), 2, 2), field="jacobian")
     singular = np.flatnonzero(~(np.abs(np.linalg.det(j)) > 0.0))
     if singular.size:
         raise InputError(f"singular at xi = {grid.xi[singular[0]].tolist()}", field="jacobian")
@@ -241,7 +243,10 @@ class _Grid:
     def field(self, directions: Directions, interpolation: str) -> DirectionField:
         """The tabulated field of directions at the nodes."""
         n = len(self.xi)
-        v = np.asarray(directions, dtype=np.float64)
+        v = real(directions)
+        if v is None:
+            text = " ".join(f"{directions!r:.60}".split())
+            raise InputError(f"{text} given, an array of real numbers needed", "directions")
         if isinstance(directions, tuple) and v.shape == (2, n, 3):
             v = v.transpose(1, 0, 2)
         if v.shape == (n, 3):

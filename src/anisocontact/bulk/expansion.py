@@ -14,6 +14,8 @@ from typing import Any
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.processes import on_all
+from anisocontact.base.sampled import sampled
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Material, small_strain
 from anisocontact.mesh import Idealisation, Model
@@ -79,6 +81,9 @@ class Heated(Idealisation):
         law: Its material.
         model: The mesh.
 
+    Raises:
+        InputError: The profile of its temperature fails, or is none.
+
     Attributes:
         stretch: What it has at its temperature without stress where strain is finite, UFL; else 1.
     """
@@ -90,7 +95,8 @@ class Heated(Idealisation):
         expands: Any = law.expansion * self._temperature
         if law.profile is not None:
             share = fem.Function(fem.functionspace(model.mesh, ("Lagrange", model.order)))
-            share.interpolate(law.profile)
+            of = _profile(law.profile)
+            on_all(model.mesh.comm, lambda: share.interpolate(of))
             expands = expands * share
         self._strain = expands
         self.stretch: Any = 1.0 if self._small else 1.0 + expands
@@ -126,3 +132,8 @@ class Heated(Idealisation):
         if not self._small:
             left = (eye + gradient) / self.stretch - eye
         return ufl.replace(expression, {gradient: left})
+
+
+def _profile(given: Callable[[Floats], Floats]) -> Callable[[Floats], Floats]:
+    """A profile whose answers are looked at: DOLFINx takes some that have another length."""
+    return lambda x: sampled(given, x, x.shape[1:], field="profile", axis=1)

@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Mat, Vec, assemble_force, create_force, fem, ufl
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
@@ -49,7 +49,10 @@ class NonlinearBulk:
         heating = {
             name: law for name, law in materials.items() if isinstance(law, ThermalExpansion)
         }
-        self.heated = {name: Heated(law, model) for name, law in heating.items()}
+        self.heated: dict[str, Heated] = {}
+        for name, law in heating.items():
+            with within(f"material.{name}"):
+                self.heated[name] = Heated(law, model)
         dx = body_measure(model)
         self._pressures = CellPressures(model, given, self._u, dx, self.heated)
         #: As of `CellPressures`.

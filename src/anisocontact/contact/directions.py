@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_sides, fem
+from anisocontact.base.processes import on_all
+from anisocontact.base.sampled import sampled
 from anisocontact.base.typed import typed
 from anisocontact.contact.quadrature import facet_quadrature
 from anisocontact.mesh import Model
@@ -67,14 +70,9 @@ def facet_directions(
     x = quadrature.reference
     if isinstance(f, DirectionField):
         f = _on_surface(f, surface)
-    values = _of_function(model, facets, f, x) if hasattr(f, "function_space") else f(x)
-    values = np.asarray(values, dtype=np.float64)
-    if values.shape not in ((len(x), 3), (len(x), 2, 3)):
-        raise InputError(
-            f"an array of shape {values.shape} for {len(x)} positions given, "
-            f"({len(x)}, 3) or ({len(x)}, 2, 3) needed",
-            "f",
-        )
+    ask = partial(_of_function, model, facets, f) if hasattr(f, "function_space") else f
+    shapes = (len(x), 3), (len(x), 2, 3)
+    values = on_all(model.mesh.comm, lambda: sampled(ask, x, *shapes, field="f"))
     comm = model.mesh.comm
     fields = np.moveaxis(values, 1, 0) if values.ndim == 3 else [values]
     points, first, *second = (

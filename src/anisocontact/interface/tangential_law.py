@@ -12,6 +12,9 @@ from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
 
+#: Most variables of its own that a law has at a point: with more, states of points are no types.
+MOST_VARIABLES = 1_000_000
+
 
 @dataclass(frozen=True, eq=False)
 class LawState:
@@ -129,13 +132,14 @@ def check_own_variables(law: Any) -> None:
     """Refuse a law that does not say how many variables of its own a point has.
 
     Raises:
-        InputError: `internal` is no whole number, or below zero.
+        InputError: `internal` is no whole number, below zero, or larger than any memory.
     """
     count = getattr(law, "internal", None)
-    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 0:
+    whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+    if not (whole and 0 <= count <= MOST_VARIABLES):
         raise InputError(
             f"{type(law).__name__}.internal is {count!r}, the number of its own variables needed, "
-            "0 or more",
+            f"0 to {MOST_VARIABLES}",
             "law",
         )
 
