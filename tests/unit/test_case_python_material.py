@@ -105,6 +105,7 @@ def test_law_of_points(tmp_path: Path) -> None:
         ("Counting", ("self.young * state.strain", "np.zeros(2)"), "(2,), (2, 3, 3) needed"),
         ("Counting", ('["times"] + 1.0', '["turns"]'), "the law Counting failed: own.py, line"),
         ("Counting", ('after = {"times"', 'after = {"turns"'), "returned other variables: turns"),
+        ("Counting", ("slope, after)", "slope, None)"), "returned other variables: none given"),
         ("Counting", ("return PointResult(stress, slope, after)", "return 1"), "returned a int"),
         ("Counting", ("history =", "strain = 'big'; history ="), "'big' given, allowed: small"),
         ("Counting", ("young=3.0", "E=3.0"), "own.py, line 19: NameError"),

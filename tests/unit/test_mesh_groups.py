@@ -109,6 +109,24 @@ def test_selector_from_outside():
         del _SELECTORS["leaning"]
 
 
+@pytest.mark.parametrize(
+    ("select", "said"),
+    [
+        (lambda b: b.middle, "the selector <lambda> failed: test_mesh_groups.py, line"),
+        (lambda b: None, "returned an array of object of shape (), 6 flags true or false needed"),
+        (lambda b: np.array([True]), "returned an array of bool of shape (1,), 6 flags"),
+        (lambda b: np.arange(6), "returned an array of int64 of shape (6,), 6 flags"),
+    ],
+)
+def test_a_selector_of_a_user_that_chooses_nothing_meant(select, said):
+    """Requirement: what a function of the user's does wrong is one line with the group."""
+    box = Body("a", make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(1, 1, 1)))
+    with pytest.raises(InputError) as caught:
+        build_mesh([box], {"a.seat": [select]})
+    assert str(caught.value).startswith("a.seat: the selector <lambda> ")
+    assert said in str(caught.value)
+
+
 @pytest.mark.parametrize("suffix", [".msh", ".vtu", ".vtk"])
 @pytest.mark.parametrize(
     ("shape", "order", "cell"),

@@ -65,8 +65,10 @@ class UserLaw:
         if not isinstance(result, PointResult):
             text = f"the law {name} returned a {type(result).__name__}, a PointResult needed"
             raise InputError(text)
-        if result.after.keys() != self.history.keys():
-            text = f"{', '.join(result.after) or 'none'} given, {', '.join(self.history)} needed"
+        after: Any = result.after
+        names = set(after) if isinstance(after, Mapping) else set()
+        if names != set(self.history):
+            text = f"{', '.join(map(str, names)) or 'none'} given, {', '.join(self.history)} needed"
             raise InputError(f"the law {name} returned other variables: {text}", "after")
         right = partial(answered, who=f"the law {name}")
         energies = {
@@ -77,7 +79,7 @@ class UserLaw:
         found = PointResult(
             right(result.stress, (n, 3, 3), part="stress"),
             right(result.tangent, (n, 3, 3, 3, 3), part="tangent"),
-            {v: right(result.after[v], (n, *s), part=v) for v, s in self.history.items()},
+            {v: right(after[v], (n, *s), part=v) for v, s in self.history.items()},
             **energies,
         )
         _check_answer(found, state, f"the law {name}")

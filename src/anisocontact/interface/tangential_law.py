@@ -135,8 +135,8 @@ def check_own_variables(law: Any) -> None:
         InputError: `internal` is no whole number, below zero, or larger than any memory.
     """
     count = getattr(law, "internal", None)
-    whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-    if not (whole and 0 <= count <= MOST_VARIABLES):
+    fits = isinstance(count, int | np.integer) and 0 <= count <= MOST_VARIABLES
+    if not fits or isinstance(count, bool):
         raise InputError(
             f"{type(law).__name__}.internal is {count!r}, the number of its own variables needed, "
             f"0 to {MOST_VARIABLES}",

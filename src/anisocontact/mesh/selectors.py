@@ -15,6 +15,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_nodes
+from anisocontact.base.python_file import called
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
@@ -187,7 +188,7 @@ def with_groups(mesh: MeshArrays, groups: Mapping[str, Sequence[Selector]]) -> M
         for number, own in enumerate(names):
             part = boundary.of_bodies(boundary.bodies == number)
             if (not dot or own == body) and len(part.nodes):
-                mask = np.logical_and.reduce([select(part) for select in chosen])
+                mask = np.logical_and.reduce([_flags(select, part, name) for select in chosen])
                 found[f"{own}.{group}"] = part.nodes[mask]
         found = {full: rows for full, rows in found.items() if len(rows)}
         if not found:
@@ -197,6 +198,17 @@ def with_groups(mesh: MeshArrays, groups: Mapping[str, Sequence[Selector]]) -> M
                 raise InputError(f"{full!r} is a group already", name)
             facets[full] = np.array_split(rows, mesh.comm.size)[mesh.comm.rank]
     return replace(mesh, facets=facets)
+
+
+def _flags(select: Selector, boundary: Boundary, group: str) -> Flags:
+    """Which facets a selector chooses, which may be a function of a user's."""
+    function = select.func if isinstance(select, partial) else select
+    who = f"the selector {getattr(function, '__name__', type(function).__name__)}"
+    found = np.asarray(called(select, boundary, who=who, field=group))
+    if found.shape != (len(boundary.nodes),) or found.dtype != bool:
+        text = f"{who} returned an array of {found.dtype} of shape {found.shape}"
+        raise InputError(f"{text}, {len(boundary.nodes)} flags true or false needed", group)
+    return found
 
 
 def _normals(corners: Floats, middles: Floats) -> Floats:
