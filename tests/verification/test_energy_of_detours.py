@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,6 +18,7 @@ from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.stepping.attempts import Attempts
 from anisocontact.solver.strategies.newton import NewtonResult
+from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.surfaces import make_surface
 
 
@@ -62,3 +64,46 @@ def test_soft_penalties_on_the_way_do_no_work(
         assert energies["friction"] >= 0.0
         off = 1e-3 * work
         assert 5.0 * gap - off <= energies["stabilisation"] <= 10.0 * gap + off
+
+
+@pytest.mark.parametrize(
+    ("cycles", "softened", "improved", "counts"),
+    [
+        (False, False, False, True),
+        (False, False, True, True),
+        (True, False, False, True),
+        (True, False, True, False),
+        (False, True, False, False),
+    ],
+)
+def test_bodies_come_through_equilibria_of_the_laws_alone(
+    cycles: bool, softened: bool, improved: bool, counts: bool
+) -> None:
+    """An equilibrium on springs that still carry something.
+
+    Requirement: it counts as one on the way of the bodies unless penalties are a share of those of
+    the laws, or multipliers are found in cycles and have yet to change. Points of penalties that
+    are let go to another facet leave it what it is.
+    """
+    gone: list[str] = []
+    springs = SimpleNamespace(
+        flow=SimpleNamespace(flows=False),
+        force=lambda _: 0.0,
+        improve=lambda *_: True,
+        travels=True,
+        come_through=lambda _, __, softer: not softer,
+    )
+    contacts = SimpleNamespace(
+        in_cycles=cycles, softened=softened, improve=lambda: improved, settle=lambda: None
+    )
+    system: Any = SimpleNamespace(
+        evaluate_at=lambda _: None,
+        _aid=springs,
+        contact_term=contacts,
+        nodal=0.0,
+        balance=SimpleNamespace(force_scale=1.0),
+        _go_on=gone.append,
+    )
+    there: Any = "there"
+    assert AssembledSystem.improve(system, there)
+    assert gone == ["there"] * counts
