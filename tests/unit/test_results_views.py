@@ -444,6 +444,10 @@ def test_no_domain_of_a_stiffness_that_multipliers_stand_for(tmp_path, adhesion)
     figure = curves.domain(run, 0)
     assert len(figure.axes) == (2 if adhesion else 1)
     assert any("adhesion" in word for word in _words(figure)) == bool(adhesion)
+    # axes of both laws look alike, and stand once in the legend
+    named = [word for word in _words(figure) if " axis of " in word]
+    laws = "friction and adhesion" if adhesion else "friction"
+    assert named == [f"first axis of {laws}", f"second axis of {laws}"]
     report = (tmp_path / "out" / "report.html").read_text()
     assert report.count("exact, by multipliers") == len(exact)
     assert ("stiffness 50, 50" in report) == bool(adhesion)

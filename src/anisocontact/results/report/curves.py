@@ -23,6 +23,8 @@ BESIDE = 0.04
 _BEHIND: dict[str, Any] = {"lw": 7.0, "alpha": 0.3, "zorder": 1.5, "solid_capstyle": "butt"}
 #: Component along x of a normal from which on forces along it are radial ones in part.
 _RADIAL = 0.01
+#: Dashes of the first and the second axis of a law.
+_AXES = (0, (6, 3)), (0, (2, 3))
 #: Share of pressure times area up to which a component of a resultant is rounding.
 _ROUNDING = 1e-9
 _DOMAIN = "adhesion domain at the end of each step"
@@ -118,14 +120,15 @@ def domain(run: RunData, contact: int) -> Figure:
         left.plot(*ellipse.T, color=ACCENT, label="friction ellipse T.FT = N²", **_BEHIND)
     _path(run, left, ratio)
     left.set_title("resultant tangential force over normal force")
-    _in_plane(left, view, "friction", "T/N", "1")
+    laws = "friction and adhesion" if elastic else "friction"
+    _in_plane(left, view, "friction", "T/N", "1", laws)
     for axes in right:
         if ellipse is not None:
             _adhesion_domains(run, contact, axes, pressing, ellipse)
         _path(run, axes, frame.of(run.vectors(f"contacts.{contact}.elastic_slip")))
         axes.plot(0.0, 0.0, "+", color="black", ms=10, label="centre")
         axes.set_title("mean elastic slip of the points in contact")
-        _in_plane(axes, view, "adhesion", "elastic slip", "length")
+        _in_plane(axes, view, "adhesion", "elastic slip", "length", laws)
     shown = {
         label: line
         for axes in (left, *right)
@@ -136,11 +139,11 @@ def domain(run: RunData, contact: int) -> Figure:
     return figure
 
 
-def _in_plane(axes: Axes, view: ContactView, law: str, what: str, unit: str) -> None:
+def _in_plane(axes: Axes, view: ContactView, law: str, what: str, unit: str, laws: str) -> None:
     """Finish a picture of vectors in the tangent plane: its view, axes and the lines of a law."""
     first, second = view.frame.names()
     _centre_view(axes)
-    _axis_lines(axes, view.mean_axes(law), f"axes of {law}")
+    _axis_lines(axes, view.mean_axes(law), laws)
     axes.set_xlabel(f"{what} along {first} [{unit}]")
     axes.set_ylabel(f"{what} along {second} [{unit}]")
     axes.set_aspect("equal")
@@ -202,13 +205,13 @@ def _centre_view(axes: Axes) -> None:
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
 
 
-def _axis_lines(axes: Axes, directions: Floats | None, name: str) -> None:
+def _axis_lines(axes: Axes, directions: Floats | None, laws: str) -> None:
+    """Axes of a law; those of all laws of a picture have one style and one name in its legend."""
     if directions is None:
         return
-    for i, direction in enumerate(directions):
-        label = name if i == 0 else None
-        style = (0, (6, 3)) if i == 0 else (0, (2, 3))
-        axes.axline((0.0, 0.0), tuple(direction), color=GREY, lw=0.8, ls=style, label=label)
+    for direction, which, style in zip(directions, ("first", "second"), _AXES, strict=True):
+        label, way = f"{which} axis of {laws}", tuple(direction)
+        axes.axline((0.0, 0.0), way, color=GREY, lw=0.8, ls=style, label=label)
 
 
 def _spans(run: RunData, at: Floats) -> list[tuple[str, float, float, str]]:
