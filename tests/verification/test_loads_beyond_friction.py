@@ -177,6 +177,32 @@ def test_an_increment_is_not_cut_on_and_on_where_nothing_could_hold_a_body() -> 
 
 
 LEAN = np.radians(15.0)
+MIDDLE = {"half.left": {"x": 0.0}}
+
+
+def _wedge(friction: float, method: Augmentation | None, *loads: float) -> Problem:
+    """Half a wedge that has been loaded so, one after the other, along its middle."""
+    spec = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(4, 4))
+    model = build_mesh([Body("half", spec)], idealisation=PlaneStrain())
+    x = model.mesh.geometry.x
+    x[:, 0] *= 1.0 + np.tan(LEAN) * x[:, 1]
+    wall = make_surface("plane", point=(1, 0, 0), normal=(-np.cos(LEAN), np.sin(LEAN), 0))
+    rubs = Friction(coefficients=friction)
+    law = ContactLaw(NormalLaw(penalty=1e5), Adhesion(stiffness=1e5), rubs)
+    contact = Contact(model, "half.right", wall, law, mortar=True, augmentation=method)
+    steel = {"half": make_material("linear-elastic", E=1000.0, nu=0.3)}
+    problem = Problem(model, steel, [contact])
+    steps = [Step(f"to {f}", 2, MIDDLE, force={"half.top": {"y": f}}) for f in loads]
+    for _ in Solver(problem, steps).run():
+        pass
+    return problem
+
+
+def _told(problem: Problem, force: float) -> str:
+    """What is told where a part of a step to a force on the wedge fails."""
+    step = Step("out", 1, MIDDLE, force={"half.top": {"y": force}})
+    problem.begin(step)
+    return Failures(problem, []).hint(step, RunPosition.beginning(0, 0.0, Limits()), 1)
 
 
 @pytest.mark.parametrize("method", [None, Augmentation()], ids=["penalty", "multipliers"])
@@ -193,30 +219,25 @@ def test_a_wedge_that_is_pulled_out_by_more_than_friction_holds_is_told(
     `mu N cos a` along the middle, loads and normal forces drive it with `F + N sin a`. Tolerance:
     the four digits that are told, and the polygon around the friction circle.
     """
-    spec = make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(4, 4))
-    model = build_mesh([Body("half", spec)], idealisation=PlaneStrain())
-    x = model.mesh.geometry.x
-    x[:, 0] *= 1.0 + np.tan(LEAN) * x[:, 1]
-    wall = make_surface("plane", point=(1, 0, 0), normal=(-np.cos(LEAN), np.sin(LEAN), 0))
-    law = ContactLaw(NormalLaw(penalty=1e5), Adhesion(stiffness=1e5), Friction(coefficients=0.4))
-    contact = Contact(model, "half.right", wall, law, mortar=True, augmentation=method)
-    steel = {"half": make_material("linear-elastic", E=1000.0, nu=0.3)}
-    problem = Problem(model, steel, [contact])
-    middle = {"half.left": {"x": 0.0}}
-    in_and_out = (("in", 1, -5.0), ("off", 2, 0.0), ("near", 2, reached))
-    steps = [Step(name, n, middle, force={"half.top": {"y": f}}) for name, n, f in in_and_out]
-    for _ in Solver(problem, steps).run():
-        pass
-    out = Step("out", 1, middle, force={"half.top": {"y": asked}})
-    problem.begin(out)
-    told = Failures(problem, []).hint(out, RunPosition.beginning(0, 0.0, Limits()), 1)
+    problem = _wedge(0.4, method, -5.0, 0.0, reached)
+    told = _told(problem, asked)
     if not said:
         assert told == ""
         return
-    force, _ = contact.resultant()
+    force, _ = problem.contacts[0].resultant()
     pressed = force @ [-np.cos(LEAN), np.sin(LEAN), 0.0]
     pattern = r"come to ([\d.]+) along \(0, 1, 0\), and friction holds ([\d.]+) there at most"
     ((drives, holds),) = re.findall(pattern, told)
     assert float(drives) == pytest.approx(asked + pressed * np.sin(LEAN), rel=1e-3)
     assert float(holds) == pytest.approx(0.4 * pressed * np.cos(LEAN), rel=1e-3)
     assert "points that touch slip in 'half.right'" in told
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_a_wedge_that_is_let_go_is_not_said_to_be_pulled_out(friction: float) -> None:
+    """One that comes out by itself as the load that presses it in is taken away.
+
+    Requirement: nothing is told of friction. Source: normal forces fall with the load, and there is
+    equilibrium all along; with those of now friction, less than tan 15 degrees, holds too little.
+    """
+    assert _told(_wedge(friction, None, -5.0, -2.0), -0.5) == ""

@@ -6,7 +6,14 @@ import numpy as np
 
 from anisocontact.solver.stepping.driven import Driven, driven
 from anisocontact.solver.stepping.limit_load import Limit, withdrawal
-from anisocontact.solver.stepping.overload import CURE, NEARLY, TOO_MUCH, TURNS, Overload
+from anisocontact.solver.stepping.overload import (
+    CURE,
+    NEARLY,
+    NOTHING,
+    TOO_MUCH,
+    TURNS,
+    Overload,
+)
 from anisocontact.solver.stepping.pressed_points import pressed_points, shown, slipping
 from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
 from anisocontact.solver.system.problem import Problem
@@ -33,7 +40,8 @@ def _pulled_out(problem: Problem, body: Driven) -> str:
     if points is None or not touched or opened:
         return ""
     then = withdrawal(points, body.motions, body.load)
-    if then is None or not then.held * TOO_MUCH < 1.0:
+    # where normal forces alone drive it, or nothing rubs, it rests as soon as these are less
+    if then is None or not NOTHING < then.held * TOO_MUCH < 1.0 or body.load @ then.motion <= 0.0:
         return ""
     accepted = withdrawal(points, body.motions, body.before)
     if accepted is None or not accepted.held * NEARLY < 1.0:
