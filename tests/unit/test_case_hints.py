@@ -204,7 +204,25 @@ def test_a_penetration_is_not_held_against_rounding(tmp_path):
     led = 'displacement = {{ "block.top" = {{ x = 0, y = 0, z = {way} }} }}'
     text = BLOCK.replace(led, "body_force.block.z = -2").replace("= 0 }}", "= 0.3 }}")
     text = text.format(gap=0.0, penalty=1e4)
-    assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])
+    assert not any("pen" in line for line in _summary(tmp_path, text)["warnings"])
+
+
+@pytest.mark.parametrize("penalty", [1e4, 1e6])
+def test_penalties_that_give_way_as_temperatures_press_are_told(tmp_path, penalty):
+    """Springs in series, E/L and eps, of a bar that warms between walls: no group of it is led.
+
+    At eps = 10 E / L the force is 1/11 = 9 % too small, and penalties hold as much of the energy.
+    A hundred times stiffer nothing is said.
+    """
+    led = 'displacement = {{ "block.top" = {{ x = 0, y = 0, z = {way} }} }}'
+    sides = ("top.z", "left.x", "front.y")
+    held = "\n".join(f'displacement."block.{one[:-2]}".{one[-1]} = 0' for one in sides)
+    held += "\ntemperature.block = 1"
+    text = BLOCK.replace(led, held).replace("nu = 0\n", "nu = 0\nexpansion = 1e-3\n")
+    found = _summary(tmp_path, text.format(gap=0.0, penalty=penalty))["warnings"]
+    said = [line for line in found if "penalties held 9% of all that bodies" in line]
+    assert not any("towards each other" in line for line in found)
+    assert len(said) == (penalty < 1e5)
 
 
 PUNCH = """

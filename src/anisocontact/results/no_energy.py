@@ -27,5 +27,22 @@ def energies_by_name(energy: Mapping[str, Any]) -> dict[str, Any]:
     return {name: NO_ENERGY if _none(value) else value for name, value in energy.items()}
 
 
+def finite(value: Any) -> Any:
+    """Nested values as JSON can have them: a number that is none becomes null.
+
+    Args:
+        value: Numbers, texts, and lists and dictionaries of them.
+
+    Example:
+        >>> finite({"gap": [0.5, float("nan")]})
+        {'gap': [0.5, None]}
+    """
+    if isinstance(value, dict):
+        return {key: finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _none(value: Any) -> bool:
     return value is None or (isinstance(value, float) and math.isnan(value))

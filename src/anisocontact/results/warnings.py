@@ -33,6 +33,9 @@ TURNED = MARGIN * FOLLOWED
 DEEP = 0.05
 #: Share of the approach of the bodies beyond which a penetration is worth a warning.
 SOFT = 0.04
+#: Share of what bodies and penalties store beyond which it is where temperatures press the bodies,
+#: whose groups move by them: force is off by more where bodies store what contact does not change.
+STORED = 0.01
 #: Share of the facet size that is rounding, or the tolerance of an augmented contact.
 ROUNDING = 1e-5
 #: What is too small where bodies penetrate.
@@ -63,32 +66,46 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
     return [*lines, *overlapping(pairs, "adjust = true")]
 
 
-def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> dict[str, float]:
+def worst(
+    entry: Mapping[str, Any],
+    before: Mapping[str, Any],
+    time: float,
+    energy: Mapping[str, float],
+) -> dict[str, float | None]:
     """Largest penetration, elastic slip and turn of a contact over the run, and when they occurred.
 
     Args:
         entry: Entry of the contact in the summary, with the largest of now.
         before: Its entry before, with the worst so far; empty at the start.
         time: Time of now.
+        energy: Energies of now, where temperatures press the bodies.
 
     Returns:
         "worst_penetration", "worst_elastic_slip", length, "worst_turn", radian, and each with
         "_time"; the penetration also with "_approach", how far the bodies had come towards each
-        other since they touched. What there is at the start is no equilibrium, and none of them.
+        other since they touched, and with "_stored", what penalties hold of all that is stored.
+        What there is at the start is no equilibrium, and none of them.
     """
     first = before.get("initial_gap", entry["least_gap"])
-    found: dict[str, float] = {"initial_gap": first}
-    come = "worst_penetration_approach"
+    found: dict[str, float | None] = {"initial_gap": first}
+    come, stored = "worst_penetration_approach", "worst_penetration_stored"
     if come not in before or entry["max_penetration"] > before["worst_penetration"]:
-        found[come] = entry["approach"] - first
+        approach = 0.0 if energy else entry["approach"] - first  # groups move as they warm
+        found |= {come: approach, stored: _held_by_penalties(energy)}
     else:
-        found[come] = before[come]
+        found |= {come: before[come], stored: before[stored]}
     for name, of_now in _WORST.items():
         key, when = f"worst_{name}", f"worst_{name}_time"
         now = entry[of_now] if before else 0.0
         grown = key not in before or now > before[key]
         found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
     return found
+
+
+def _held_by_penalties(energy: Mapping[str, float]) -> float | None:
+    """Share of the stored energy; None where it is not asked for, or no material tells it."""
+    every = sum(energy.get(name, 0.0) for name in ("normal", "adhesion", "elastic"))
+    return energy["normal"] / every if every > 0.0 else None
 
 
 def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, Any]:
@@ -260,18 +277,31 @@ def soft(
     for contact, entry in zip(contacts, shown, strict=True):
         if contact.physical_penalty or (_exact(contact) and not relaxed):
             continue
-        deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
-        size = entry["facet_size"]
+        deep, size = entry["worst_penetration"], entry["facet_size"]
         said = not ROUNDING < deep / size <= DEEP  # nothing, or by its facets
-        told = SOFT * come < deep and come > ROUNDING * size  # less is no way that a body has come
-        if said or contact.interface.normal.named[0] != "penalty" or not told:
+        if said or contact.interface.normal.named[0] != "penalty":
             continue
-        found.append(
-            f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that "
-            f"the bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, "
-            f"and the force is off by about as much; {_cure(contact, NORMAL)}"
-        )
+        found += [
+            f"{_pair(entry)}: {text}, at time {entry['worst_penetration_time']:.4g}, and the force "
+            f"is off by about as much; {_cure(contact, NORMAL)}"
+            for text in _share_of_way(entry, deep)
+        ]
     return found
+
+
+def _share_of_way(entry: Mapping[str, Any], deep: float) -> list[str]:
+    """What is said of a penetration that is a large share of how bodies gave way, if it is."""
+    come, stored = entry["worst_penetration_approach"], entry["worst_penetration_stored"]
+    if stored is not None:
+        held = f"penalties held {stored:.0%} of all that bodies and contacts store"
+        return [held] if stored > STORED else []
+    # less is no way that a body has come
+    if not (SOFT * come < deep and come > ROUNDING * entry["facet_size"]):
+        return []
+    return [
+        f"the penetration was up to {deep / come:.0%} of the {come:.3g} that the bodies came "
+        "towards each other"
+    ]
 
 
 def _cure(contact: Contact, stiffer: str) -> str:

@@ -23,7 +23,7 @@ from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
 from anisocontact.results.master_patches import MasterPatches
-from anisocontact.results.no_energy import energies_by_name
+from anisocontact.results.no_energy import energies_by_name, finite
 from anisocontact.results.output_options import Labels, OutputOptions
 from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
@@ -182,7 +182,7 @@ class Writer:
             WriteError: It cannot be written; the one before is still there.
         """
         self._kept += 1
-        content = {"writer": _finite(self.state()), **facts}
+        content = {"writer": finite(self.state()), **facts}
         self._checkpoints.take(self._disk, self._kept, kept, content)
 
     def keep_last(self) -> None:
@@ -354,8 +354,10 @@ class Writer:
         pairs = zip(numbers["contacts"], self._constants, strict=True)
         contacts = [constant | changing for changing, constant in pairs]
         before = self.summary.get("contacts", [{}] * len(contacts))
+        # loads press as they are, however soft penalties are; temperatures do not
+        stored = numbers["energy"] if self._problem.bulk.heated else {}
         for contact, entry, old in zip(self._problem.contacts, contacts, before, strict=True):
-            entry.update(worst(entry, old, self.summary["time"]))
+            entry.update(worst(entry, old, self.summary["time"], stored))
             entry["narrow"] = narrow_so_far(contact, old.get("narrow"))
         self.summary.update(numbers, contacts=contacts)
 
@@ -366,7 +368,7 @@ class Writer:
 
     def _text(self) -> str:
         energy = energies_by_name(self.summary.get("energy", {}))
-        content = _finite(self.summary | {"energy": energy})
+        content = finite(self.summary | {"energy": energy})
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
@@ -382,15 +384,6 @@ def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]
         }
         for contact, master in zip(problem.contacts, masters, strict=True)
     ]
-
-
-def _finite(value: Any) -> Any:
-    """Nested values as JSON can have them: a number that is none becomes null."""
-    if isinstance(value, dict):
-        return {key: _finite(one) for key, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _event(accepted: Accepted) -> dict[str, Any]:
