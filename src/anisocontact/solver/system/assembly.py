@@ -137,7 +137,7 @@ class Assembly:
         ]
         load_norm = float(np.hypot(on_nodes, float(np.linalg.norm(self.rigid.loads()))))
         stiff = max(stiff, self.bodies.largest) + lever + self.fields.rounded(x)
-        sizes = Magnitudes(load_norm, at_work, stiff)
+        sizes = Magnitudes(load_norm, at_work, stiff, self.bodies.bulk.hardness)
         return closed(
             np.append(residual, of_bodies) if layout.last_rank else residual,
             sizes,

@@ -14,6 +14,8 @@ from anisocontact.base.array_types import Floats
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
 #: Share of the loads that may be left out of balance as round-off.
 LOAD_SHARE = 1e-6
+#: Hardness from which on it is what rounds: nu = 0.49998 and more.
+HARD = 1e4
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,7 @@ class ForceBalance:
         reached: Whether displacements are where they are prescribed, see `prescribed_reached`.
         rounded: Residual that floating point leaves however small the loads are, force.
         far: See `Reached.far`.
+        hardness: See `Magnitudes.hardness`.
     """
 
     residual: Floats
@@ -89,6 +92,7 @@ class ForceBalance:
     reached: bool = True
     rounded: float = 0.0
     far: float = 0.0
+    hardness: float = 0.0
 
     @classmethod
     def none(cls, owned: int) -> ForceBalance:
@@ -109,9 +113,12 @@ class ForceBalance:
                 "far, more than all is long: where that is not prescribed, contact and friction do "
                 "not hold the loads on them; load them less, or lead them by displacements"
             )
+        cures = ["larger loads", "a material at small strain"]
+        if self.hardness > HARD:
+            cures.append("nu = 0.4999 in the place of 0.5, a hundredth of this rounding")
         return (
             "which may be rounding of the forces inside bodies, beside which loads are small: "
-            "larger loads, or a material at small strain"
+            f"{', '.join(cures[:-1])}, or {cures[-1]}"
         )
 
     def of_fields(self, norm: float) -> tuple[FieldBalance, ...]:
@@ -127,11 +134,13 @@ class Magnitudes:
         load: Of the loads.
         at_work: Of whatever else is at work.
         stiff: Of the forces that are rounded: of nodes moved alone, and levers of the terms.
+        hardness: Of bodies at finite strain against changes of volume, see `CellPressures`.
     """
 
     load: float
     at_work: Sequence[float]
     stiff: float
+    hardness: float = 0.0
 
     @property
     def force_scale(self) -> float:
@@ -187,9 +196,8 @@ def closed(
     outside, load = forces or (np.zeros(0), np.zeros(0))
     scale, round_off = sizes.force_scale, sizes.round_off
     got, far = reached.prescribed, reached.far
-    return ForceBalance(
-        residual, norm, scale, round_off, outside, load, fields, got, sizes.rounded, far
-    )
+    rounded = (sizes.rounded, far, sizes.hardness)
+    return ForceBalance(residual, norm, scale, round_off, outside, load, fields, got, *rounded)
 
 
 # Stands for the forces where there are none, so that zero over zero is zero.
