@@ -263,6 +263,32 @@ def test_missing_file():
         read_gmsh("none.msh")
 
 
+def test_a_name_at_which_the_system_does_not_look():
+    """Requirement: whatever keeps a file from being read is one line, here a name too long."""
+    from anisocontact.mesh import read_gmsh
+
+    name = "m" * 300 + ".msh"
+    with pytest.raises(InputError, match=rf"^mesh.file: mesh file '{name}' cannot be looked at: "):
+        read_gmsh(name)
+
+
+def test_triangles_on_hexahedra(tmp_path):
+    """Requirement: facets of another kind than those of the cells are refused in one line."""
+    from anisocontact.mesh import read_gmsh
+
+    corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    nodes = "\n".join(f"{i} {x} {y} {z}" for i, (x, y, z) in enumerate(corners, 1))
+    path = tmp_path / "a.msh"
+    path.write_text(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+        '$PhysicalNames\n2\n2 1 "a.low"\n3 2 "a"\n$EndPhysicalNames\n'
+        f"$Nodes\n8\n{nodes}\n$EndNodes\n"
+        "$Elements\n2\n1 2 2 1 1 1 2 3\n2 5 2 2 2 1 2 3 4 5 6 7 8\n$EndElements\n"
+    )
+    with pytest.raises(InputError, match=r"'a.low': 1 of 1 facets belong to no cell of a body"):
+        read_gmsh(path)
+
+
 def test_facets_off_the_boundary(gmsh, tmp_path):
     """Requirement: facets that do not bound a body are refused, with their number."""
     from anisocontact.mesh import read_gmsh

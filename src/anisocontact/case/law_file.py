@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.given_file import why_no_file
 from anisocontact.base.python_file import module_of, where_failed
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
@@ -141,7 +142,7 @@ def module_at(
         InputError: No such file, or one that cannot be run.
     """
     path = resolve(given)
-    if not path.is_file():
+    if why_no_file(path):
         raise InputError(f"'{given}' given, no such file", "file")
     if not execute:
         return None

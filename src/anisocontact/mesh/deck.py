@@ -15,6 +15,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.given_file import why_no_file
 
 #: How deep files may include others.
 DEPTH = 10
@@ -120,9 +121,8 @@ def read_cards(path: Path, depth: int = 0) -> list[Card]:
         if depth == DEPTH:
             raise InputError(f"line {card.line}: more than {DEPTH} files include each other")
         other = _included(path, card)
-        if not other.is_file():
-            text = f"line {card.line}: the included file {str(other)!r} does not exist"
-            raise InputError(text)
+        if what := why_no_file(other):
+            raise InputError(f"line {card.line}: the included file {str(other)!r} {what}")
         cards += read_cards(other, depth + 1)
     return cards
 

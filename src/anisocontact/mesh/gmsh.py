@@ -15,6 +15,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
+from anisocontact.base.given_file import why_no_file
 from anisocontact.base.typed import typed
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, check_has_cells, facet_owners
@@ -105,10 +106,9 @@ def check_file(path: Path, field: str) -> None:
         field: Where the path was written, for messages.
 
     Raises:
-        InputError: Nothing is there, or a folder.
+        InputError: Nothing is there, a folder, or something that cannot be looked at.
     """
-    if not path.is_file():
-        what = "is a folder" if path.is_dir() else "does not exist"
+    if what := why_no_file(path):
         raise InputError(f"mesh file {str(path)!r} {what}", field)
 
 
@@ -278,7 +278,10 @@ def _facet_groups(mesh: MeshArrays, groups: dict[str, Ints]) -> dict[str, Ints]:
         nodes = found[(found >= 0).all(axis=1)]
         if not mesh.sum(len(nodes)):
             continue
-        owner, count = facet_owners(mesh, nodes[:, : mesh.vertices_per_facet])
+        corners = nodes[:, : mesh.vertices_per_facet]
+        if corners.shape[1] < mesh.vertices_per_facet:  # triangles, and the cells are hexahedra
+            check_boundary(mesh, name, np.zeros(len(nodes), dtype=np.int64))
+        owner, count = facet_owners(mesh, corners)
         check_boundary(mesh, name, count)
         bounded = mesh.cell_split.fetch(labels, owner)
         for full_name, mask in _prefixed(mesh, name, bounded, names):
