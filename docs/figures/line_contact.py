@@ -29,6 +29,7 @@ FAMILIES: dict[str, tuple[tuple[int, ...], Callable[[int], float]]] = {
     "rounded punch, order 2": ((4, 6, 8), lambda n: punch.pressed(Line, n, n + 1, 2).largest),
     "shift, $Q/\\mu P$ = 0.22": ((4, 6, 8), lambda n: friction.shifted(Line, n, 0.3).largest),
     "shift, $Q/\\mu P$ = 0.65": ((4, 6, 8), lambda n: friction.shifted(Line, n, 0.9).largest),
+    "rolling": ((6, 8), lambda n: friction.rolled(Line, n).largest),
     "growing": (COUNTS[1:6], lambda n: spence.pressed(Line, n, spence.BETA, 8 * n).largest),
 }
 

@@ -37,8 +37,9 @@ REDUCED = 0.5 * E / (1.0 - NU**2)
 LAW = ContactLaw(NormalLaw(penalty=10.0 * E), Adhesion(stiffness=E), Friction(coefficients=MU))
 FIXED = {"x": 0.0, "y": 0.0}
 DOWN = {"x": 0.0, "y": -2.5 / RADIUS}
-#: Way that a cylinder rolls, two widths of the contact, and what it moves less than it would roll.
-WAY, CREEP = 4.0, 0.2 / RADIUS
+#: Way that a cylinder rolls, and what it moves less than it would roll. After four widths of the
+#: contact it rolls steadily; after two, traction still grows by a fifth, and the shear lacks 7 %.
+WAY, CREEP = 8.0, 0.2 / RADIUS
 
 
 def closed_form(x: Floats, share: float, forward: bool) -> Floats:
@@ -123,8 +124,13 @@ def test_shift_of_cattaneo(line: Any, shift: float, n: int, bound: float) -> Non
 
 @pytest.mark.slow
 def test_rolling_of_carter(line: Any) -> None:
-    """Steady rolling after two widths of the contact, Q / mu P of 0.42, 6 facets on 7."""
-    shear = rolled(line, 6)
-    assert 0.3 < shear.share < 0.6
-    assert shear.largest < 0.06
-    shear.check_status()
+    """Steady rolling after four widths of the contact, Q / mu P of 0.52, 6 facets on 7 and 8 on 9.
+
+    Demanded is half of what the shift may be off, and a mean error that falls: from 0.76 to 0.24 %.
+    """
+    found = [rolled(line, n) for n in (6, 8)]
+    for shear in found:
+        assert 0.4 < shear.share < 0.6
+        assert shear.largest < 0.03
+        shear.check_status()
+    assert found[1].mean < 0.5 * found[0].mean
