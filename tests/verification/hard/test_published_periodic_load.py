@@ -13,7 +13,9 @@ Requirement: P = 3.3 + sin t and Q = 0.9 sin(t + 60 degrees) on a steady cycle o
 energy that friction dissipates within 2.5 %, and 1 % of each other with either body as the slave;
 the shear at all nodes within 0.85 a within 9 % of mu p0, root mean square; at most 8 corrections.
 Tolerance: measured 0.9 and 1.5 %, 4.1 and 7.5 % with seven facets across a, as there are three
-changes of the sign of slip within them. Sliding everywhere would be 47 % off.
+changes of the sign of slip within them. Sliding everywhere would be 47 % off. The errors of
+increments and facets have other signs: 64 increments leave 1.7 and 2.4 % more energy, facets half
+as long 3.8 and 5.0 % less, both together 0.4 and 1.6 % less; the shear is then 3.4 and 5.3 % off.
 """
 
 from __future__ import annotations

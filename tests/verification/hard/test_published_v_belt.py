@@ -1,12 +1,13 @@
 """A V-belt in the groove of a pulley, which turns: Euler's equation for a wedge.
 
 Source: the flanks of a groove of half-angle b press the belt by n / 2 sin b each where a flat drum
-presses it by n, so that pulls grow by exp(f a / sin b) over the angle a [Shigley, ch. 17]. Friction
-acts at the radius r of what presses the flanks, the pull at that of the middle of the belt, R, so
-that the exponent is f a r / (R sin b). On grooves that wind around the pulley friction has c across
-the slip, which is around the pulley, beside f along it, of the normal force: inwards on one flank
-and outwards on the other. What presses both is different then, so that forces along the axis are in
-balance, and f / sin b becomes f / (sin b (1 + c^2)). This was derived for the test.
+presses it by n, so that pulls grow by exp(f a / sin b) over the angle a [Shigley, ch. 17, from
+memory]. Friction acts at the radius r of what presses the flanks, the pull at that of the middle
+of the belt, R, so that the exponent is f a r / (R sin b). On grooves that wind around the pulley
+friction has c across the slip, which is around the pulley, beside f along it, of the normal force:
+inwards on one flank and outwards on the other. What presses both is different then, so that forces
+along the axis are in balance, and f / sin b becomes f / (sin b (1 + c^2)). This was derived for
+the test.
 
 Requirement: half a turn around a rigid pulley, a surface of revolution whose groove is turned from
 its profile; friction 0.1, friction 0.1 around the pulley and 0.3 across, and 0.15 and 0.05 along
