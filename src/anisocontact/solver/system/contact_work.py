@@ -159,7 +159,7 @@ class ContactWork:
         return missed if counts and np.isfinite(missed) else 0.0
 
     def _led(self) -> bool:
-        """Whether prescribed motion alone drives the bodies, under loads that stay as they are."""
+        """Whether prescribed motions or temperatures drive the bodies, under loads that stay."""
         parts = self._parts
         held = not (parts.attached or any(parts.stabilisation.stiffnesses))
         local = np.array([not parts.supports.rest, not parts.loads.rest], dtype=np.int64)

@@ -23,7 +23,7 @@ class EndsWork:
 
     @classmethod
     def of(cls, before: float, after: float) -> EndsWork:
-        """That of which each end makes a number."""
+        """That of an energy which is one number at each end, as what a temperature gives."""
         return cls(0.5 * (before + after), 0.5 * abs(after - before))
 
     @classmethod

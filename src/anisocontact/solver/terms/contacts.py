@@ -168,13 +168,13 @@ class Contacts(Term):
     def close_singly(self, sticks: bool) -> bool:
         """Let corrections close one point of a contact at a time; whether they did not before.
 
-        Not where metal yields: a point that closes changes more there than how bodies bend, and
-        other penalties lead on sooner.
+        Where metal may yield a point that closes changes more than how bodies bend, as where points
+        stick: other penalties lead on sooner, and this is left to the scheme that does it always.
 
         Args:
             sticks: Whether points have stuck lately.
         """
-        return not self.plastic and any([one.close_singly(sticks) for one in self._trials])
+        return any([one.close_singly(sticks or self.plastic) for one in self._trials])
 
     def consistent(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
