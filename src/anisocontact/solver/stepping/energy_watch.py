@@ -26,7 +26,7 @@ MANY = 0.05
 
 
 class Cause(StrEnum):
-    """What makes a residual; of those before `COARSE` the first that applies to an increment."""
+    """What makes a residual."""
 
     RAN_OFF = "slave points slid off the end of a master"
     JUMPED = "bodies jumped to another equilibrium"
@@ -156,8 +156,15 @@ class EnergyWatch:
         if -float(heat.sum()) > FELL * abs(left):
             return Cause.HEAT_FELL
         flowed = heat[-1] >= max(abs(left), heat[0]) and heat[-1] > 0.0
-        signs = (ran_off, jumped, flowed, touched, slid, True)
-        return Cause.OVERLAPPED if self._overlap else list(Cause)[signs.index(True)]
+        signs = {
+            Cause.OVERLAPPED: self._overlap,
+            Cause.RAN_OFF: ran_off,
+            Cause.JUMPED: jumped,
+            Cause.FLOWED: flowed,
+            Cause.TOUCHED: touched,
+            Cause.SLID: slid,
+        }
+        return next((cause for cause, applies in signs.items() if applies), Cause.COARSE)
 
     def _share(self, energies: Mapping[str, float]) -> float:
         residual = abs(self._residual)
