@@ -160,7 +160,14 @@ class LoadCurve:
         return now + (1.0 if self.relative else 1.0 - share) * (start - first)
 
     def jump(self, start: float) -> float:
-        """How far the amplitude begins from a value; 0 where that is round-off."""
+        """How far the amplitude begins from a value.
+
+        Args:
+            start: The value, of the unit of what is prescribed.
+
+        Returns:
+            Its first value less this one; 0 where that is round-off, or where it counts from there.
+        """
         first = self._number(0.0)
         same = _SAME * max(abs(start), abs(self.value), abs(first))
         return 0.0 if self.relative or abs(first - start) <= same else first - start
@@ -186,7 +193,14 @@ class LoadCurve:
         return max(abs(float(self.at(share, duration, start))) for share in places)
 
     def scaled(self, factor: float) -> LoadCurve:
-        """The load curve of a multiple."""
+        """The load curve of a multiple.
+
+        Args:
+            factor: What the value is multiplied with.
+
+        Returns:
+            Another load curve with the same amplitude.
+        """
         return replace(self, value=factor * self.value)
 
     def coarse(self, duration: float, increments: int) -> bool:

@@ -62,11 +62,27 @@ class HistoryMaterial(Protocol):
     history: Mapping[str, tuple[int, ...]]
 
     def piola(self, u: Any, before: Before) -> Any:
-        """First Piola-Kirchhoff stress at the end of an increment, (3, 3), UFL, stress."""
+        """First Piola-Kirchhoff stress at the end of an increment.
+
+        Args:
+            u: Displacement at the end of the increment, UFL.
+            before: Accepted variables by name, and the time increment `dt`.
+
+        Returns:
+            The stress, (3, 3), UFL, stress.
+        """
         ...
 
     def advance(self, u: Any, before: Before) -> Mapping[str, Any]:
-        """All internal variables at the end of an increment, UFL, by name."""
+        """All internal variables at the end of an increment.
+
+        Args:
+            u: Displacement at the end of the increment, UFL.
+            before: Accepted variables by name, and the time increment `dt`.
+
+        Returns:
+            Each by its name, UFL, of the shape in `history`.
+        """
         ...
 
 

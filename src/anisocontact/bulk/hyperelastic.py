@@ -263,7 +263,14 @@ class UserStress:
         self.young = _scale(young)
 
     def piola(self, u: Any) -> Any:
-        """First Piola-Kirchhoff stress, UFL."""
+        """First Piola-Kirchhoff stress.
+
+        Args:
+            u: Displacement, UFL.
+
+        Returns:
+            The stress, (3, 3), UFL, stress.
+        """
         return self._piola(deformation_gradient(u))
 
 

@@ -100,7 +100,14 @@ class PointLaw(Protocol):
     history: Mapping[str, tuple[int, ...]]
 
     def update(self, state: PointState) -> PointResult:
-        """Stress, tangent, new variables and energies; must not change its argument."""
+        """Stress, tangent, new variables and energies; must not change its argument.
+
+        Args:
+            state: Strain of n points, what they remember, time increment and place.
+
+        Returns:
+            Arrays of n points, of the shapes of `PointResult`.
+        """
         ...
 
 
@@ -120,7 +127,14 @@ class ElasticVolume:
     bulk: float
 
     def volume(self, u: Any) -> Volume:
-        """`tr(E)`."""
+        """The change of volume, `tr(E)`.
+
+        Args:
+            u: Displacement, UFL.
+
+        Returns:
+            Bulk modulus and change of volume.
+        """
         kind: Any = STRAINS[self.strain]
         return Volume(constant(u, self.bulk), kind.dilatation)
 

@@ -29,11 +29,14 @@ class Volume:
     change: Callable[[Any], Any]
 
     def stress(self, u: Any, pressure: Any = None) -> Any:
-        """Stress `p de/dH`, (3, 3), UFL.
+        """Stress `p de/dH`.
 
         Args:
             u: Displacement, UFL.
             pressure: p, tension positive; `K e` at every point if left out.
+
+        Returns:
+            First Piola-Kirchhoff stress of the change of volume, (3, 3), UFL, stress.
         """
         gradient = ufl.grad(u)
         tension = self.bulk * self.change(gradient) if pressure is None else pressure

@@ -234,7 +234,14 @@ class Contact(ContactPair, OneHistory, Uncopied):
         return self.master.size
 
     def slip_stiffness(self, dt: float) -> float:
-        """As of `Trials`."""
+        """Largest stiffness of adhesion against slip, as of `Trials`.
+
+        Args:
+            dt: Time increment, time.
+
+        Returns:
+            The stiffness, stress/length; 0 where multipliers hold what sticks.
+        """
         return self.trials.slip_stiffness(dt)
 
     @property
@@ -243,7 +250,11 @@ class Contact(ContactPair, OneHistory, Uncopied):
         return self.current.response
 
     def add_force(self, out: Floats) -> None:
-        """Add the forces of the trial to the local nodes, (nodes, 3), force."""
+        """Add the forces of the trial to the local nodes.
+
+        Args:
+            out: Nodal forces, (nodes, 3), force; added to.
+        """
         self.answer.add_force(out)
 
     def couplable(self) -> Locals:
@@ -273,7 +284,11 @@ class Contact(ContactPair, OneHistory, Uncopied):
         return self.master.located(self.trial.state)
 
     def hold(self, points: Flags) -> None:
-        """As of `Master`."""
+        """Hold points on their facets until the trial is kept or forgotten, as of `Master`.
+
+        Args:
+            points: Which of them, (n,).
+        """
         self.master.hold(points)
 
     def strayed(self) -> Floats:
@@ -314,6 +329,9 @@ class Contact(ContactPair, OneHistory, Uncopied):
         Args:
             now: The points.
             about: Point of the moment, (3,), length.
+
+        Returns:
+            The force, then the moment, (6,), force and force times length.
         """
         on_axis = self._on_axis
         if not on_axis.any():

@@ -63,7 +63,18 @@ class AdhesionAndFriction(CopiedByArguments):
         self.friction_directions = friction.directions
 
     def core(self, normal: NormalLaw, evolution: str) -> _core.Law:
-        """The law as the core has it."""
+        """The law as the core has it.
+
+        Args:
+            normal: Law of the pressure.
+            evolution: Name of the form of evolution.
+
+        Returns:
+            The law of the core.
+
+        Raises:
+            InputError: Values that do not go together.
+        """
         fields = (c.field.core if c.field else None for c in self.carried)
         adhesion_field, friction_field, second = fields
         return _made(
@@ -80,7 +91,14 @@ class AdhesionAndFriction(CopiedByArguments):
         )
 
     def check_evolution(self, evolution: str) -> None:
-        """Refuse a form of evolution that does not go with adhesion."""
+        """Refuse a form of evolution that does not go with adhesion.
+
+        Args:
+            evolution: Name of the form.
+
+        Raises:
+            InputError: It is `total` with another adhesion than an elastic one.
+        """
         if evolution == "total" and self.model != "elastic":
             text = f"'total' needs the adhesion model 'elastic', {self.model!r} given"
             raise InputError(text, field="evolution")
@@ -94,17 +112,39 @@ class AdhesionAndFriction(CopiedByArguments):
         }
 
     def stiffened(self, times: float) -> AdhesionAndFriction:
-        """The law with a stiffness of adhesion `times` as large, if it is a penalty."""
+        """The law with a stiffer adhesion, if its stiffness is a penalty.
+
+        Args:
+            times: How many times as large the stiffness is.
+
+        Returns:
+            The law; the one given is unchanged.
+        """
         adhesion = self.adhesion if times == 1.0 else self.adhesion.stiffened(times)
         return AdhesionAndFriction(adhesion, self.friction)
 
     def in_series(self, compliance: float, dt: float) -> tuple[AdhesionAndFriction, SeriesHistory]:
-        """The law with a compliant layer behind adhesion, see `anisocontact.interface.series`."""
+        """The law with a compliant layer behind adhesion, see `anisocontact.interface.series`.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment, time.
+
+        Returns:
+            The law, and what its history starts from.
+        """
         adhesion, start = series.in_series(self.adhesion, compliance, dt)
         return AdhesionAndFriction(adhesion, self.friction), start
 
     def slip_stiffness(self, dt: float) -> float:
-        """Largest stiffness of adhesion against slip in an increment of time, stress/length."""
+        """Largest stiffness of adhesion against slip in an increment of time.
+
+        Args:
+            dt: Time increment, time.
+
+        Returns:
+            The stiffness, stress/length; 0 where a force can be along the slip.
+        """
         return series.slip_stiffness(self.adhesion, dt)
 
     def penalty(self) -> float:
@@ -245,7 +285,14 @@ class ContactLaw(CopiedByArguments):
         return ContactLaw(self.normal, tangential, evolution=self.evolution), start
 
     def slip_stiffness(self, dt: float) -> float:
-        """Largest stiffness against slip in an increment of time, stress/length."""
+        """Largest stiffness against slip in an increment of time.
+
+        Args:
+            dt: Time increment, time.
+
+        Returns:
+            The stiffness, stress/length.
+        """
         return self.tangential.slip_stiffness(dt)
 
     def penalties(self) -> tuple[float, float]:

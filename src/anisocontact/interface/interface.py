@@ -98,16 +98,39 @@ class Interface(CopiedByArguments):
         return Interface(self.surface, law, threads=self.threads)
 
     def stiffened(self, normal: float, tangential: float = 1.0) -> Interface:
-        """The interface with other penalties, see `ContactLaw.stiffened`."""
+        """The interface with other penalties, see `ContactLaw.stiffened`.
+
+        Args:
+            normal: How many times as large the normal penalty is.
+            tangential: How many times as large the stiffness of adhesion is, if it is a penalty.
+
+        Returns:
+            The interface; the one given is unchanged.
+        """
         return self._with(self.law.stiffened(normal, tangential))
 
     def in_series(self, compliance: float, dt: float) -> tuple[Interface, SeriesHistory]:
-        """The interface with a compliant layer behind adhesion, see `ContactLaw.in_series`."""
+        """The interface with a compliant layer behind adhesion, see `ContactLaw.in_series`.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment, time.
+
+        Returns:
+            The interface, and what its history starts from.
+        """
         law, start = self.law.in_series(compliance, dt)
         return self._with(law), start
 
     def slip_stiffness(self, dt: float) -> float:
-        """Largest stiffness against slip in an increment of time, stress/length."""
+        """Largest stiffness against slip in an increment of time.
+
+        Args:
+            dt: Time increment, time.
+
+        Returns:
+            The stiffness, stress/length.
+        """
         return self.law.slip_stiffness(dt)
 
     def penalties(self) -> tuple[float, float]:

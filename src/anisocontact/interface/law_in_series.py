@@ -55,7 +55,18 @@ class LawInSeries:
         self.internal = law.internal
 
     def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
-        """Force, tangent and new state, found by Newton's method at every point."""
+        """Force, tangent and new state, found by Newton's method at every point.
+
+        Args:
+            state: History of n points, as the law has it.
+            kinematics: What happens to them: the slip of law and layer together.
+
+        Returns:
+            Force, tangent and new state of law and layer; `slip` is that of the law.
+
+        Raises:
+            InputError: The law failed, or returned what is no result.
+        """
         c, force = self._compliance, state.traction
         for _ in range(_MOST):
             moved = replace(kinematics, increment=kinematics.increment + c * force)

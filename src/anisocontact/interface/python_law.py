@@ -111,13 +111,28 @@ class PythonLaw(CopiedByArguments):
         self._seen: list[tuple[LawState, LawKinematics]] = []  # the last input, for `doubts`
 
     def core(self, normal: NormalLaw, evolution: str) -> _core.Law:
-        """Normal law and axes as the core has them."""
+        """Normal law and axes as the core has them.
+
+        Args:
+            normal: Law of the pressure.
+            evolution: Name of the form of evolution, always `transport`.
+
+        Returns:
+            A law of the core to which the tangential force is given.
+        """
         (one,) = self.carried
         field = one.field.core if one.field else None
         return _core.Law.given(normal.named, field, one.on_slave)
 
     def check_evolution(self, evolution: str) -> None:
-        """Refuse another form of evolution than the one a law sees its history by."""
+        """Refuse another form of evolution than the one a law sees its history by.
+
+        Args:
+            evolution: Name of the form.
+
+        Raises:
+            InputError: It is another one.
+        """
         if evolution != EVOLUTION:
             text = f'"{evolution}" given, a law of your own has "{EVOLUTION}" only'
             raise InputError(text, "evolution")
@@ -132,7 +147,15 @@ class PythonLaw(CopiedByArguments):
         return self
 
     def in_series(self, compliance: float, dt: float) -> tuple[PythonLaw, SeriesHistory]:
-        """The law with a compliant layer behind it, see `LawInSeries`."""
+        """The law with a compliant layer behind it, see `LawInSeries`.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment, without meaning here, time.
+
+        Returns:
+            The law, and that its history is the one it had.
+        """
         (one,) = self.carried
         law = LawInSeries(self.law, compliance)
         behind = PythonLaw(law, directions=one.field, directions_on=one.on)
@@ -140,7 +163,14 @@ class PythonLaw(CopiedByArguments):
         return behind, SeriesHistory.unchanged()
 
     def slip_stiffness(self, dt: float) -> float:
-        """Stiffness of the law against slip, see `law_stiffness`, stress/length."""
+        """Stiffness of the law against slip from rest, see `law_stiffness`.
+
+        Args:
+            dt: Time increment, time.
+
+        Returns:
+            The stiffness under a unit pressure, stress/length.
+        """
         return law_stiffness(self.law, dt)
 
     def penalty(self) -> float:

@@ -124,7 +124,15 @@ class TangentialLaw(Protocol):
     internal: int
 
     def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
-        """Force, tangent and new state; must not change its arguments."""
+        """Force, tangent and new state; must not change its arguments.
+
+        Args:
+            state: History of n points, rotated to where they are now.
+            kinematics: Slip increment, pressure and time step of the n points.
+
+        Returns:
+            Force, tangent and new state, of the shapes of `LawResult`.
+        """
         ...
 
 

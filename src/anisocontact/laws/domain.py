@@ -275,7 +275,14 @@ def _domain(
 
 
 def rotation(angle: float) -> Floats:
-    """Rotation matrix of a plane, (2, 2)."""
+    """Rotation of a plane.
+
+    Args:
+        angle: Counter-clockwise, radian.
+
+    Returns:
+        Its matrix, (2, 2).
+    """
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s], [s, c]])
 

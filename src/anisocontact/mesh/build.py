@@ -30,7 +30,17 @@ class Source(Protocol):
     """Where bodies come from."""
 
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
-        """The bodies in place; each process of `comm` gets its share."""
+        """The bodies in place; collective.
+
+        Args:
+            comm: Communicator, of which each process gets its share.
+
+        Returns:
+            Cells, nodes and facet groups.
+
+        Raises:
+            InputError: No mesh can be made of it.
+        """
         ...
 
 
@@ -60,7 +70,17 @@ class Body:
             raise InputError(f"{self.name!r} given, a name without a dot needed", "name")
 
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
-        """The body in place; see `Source`."""
+        """The body in place; see `Source.arrays`.
+
+        Args:
+            comm: Communicator, of which each process gets its share.
+
+        Returns:
+            Cells, nodes and facet groups.
+
+        Raises:
+            InputError: Its cells are flat, inverted or too far away.
+        """
         shape = self.shape
         degree = shape.order if shape.curved else 1
         blocks = checked_blocks(shape)
@@ -103,7 +123,18 @@ class MeshFile:
     cell_size: float | None = None
 
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
-        """The bodies in place; see `Source`."""
+        """The bodies in place; see `Source.arrays`.
+
+        Args:
+            comm: Communicator, of which each process gets its share.
+
+        Returns:
+            Cells, nodes and facet groups.
+
+        Raises:
+            InputError: The file cannot be read, has no such body or cells that are none, or a size
+                of cells is given for a file that has cells.
+        """
         path = Path(self.path)
         if self.cell_size is None:
             mesh = file_arrays(path, self.bodies, self.field, comm)

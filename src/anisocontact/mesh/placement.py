@@ -129,6 +129,12 @@ class Placement:
     def apply(self, mesh: MeshArrays) -> MeshArrays:
         """The mesh where it is to stand.
 
+        Args:
+            mesh: The mesh where it was made.
+
+        Returns:
+            The mesh, with points and node groups moved; the one given is unchanged.
+
         Raises:
             InputError: Floating point cannot tell its nodes apart there.
         """

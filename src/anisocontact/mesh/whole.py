@@ -69,7 +69,13 @@ class WholeMesh:
     notes: tuple[str, ...] = ()
 
     def add_cells(self, cell: str, nodes: Ints, bodies: Sequence[str]) -> None:
-        """Add elements of one kind with the body of each."""
+        """Add elements of one kind with the body of each.
+
+        Args:
+            cell: Kind of the elements, such as "hexahedron".
+            nodes: Nodes of each, in the order of VTK, (n, k).
+            bodies: Name of the body of each, (n,); "" for none.
+        """
         self.cells.append((cell, nodes))
         self.bodies.append(bodies)
 

@@ -72,7 +72,15 @@ class Group:
         self.orientation = orientation
 
     def arms(self, at: Foot) -> Floats:
-        """Offsets in space at the start, (n, 3)."""
+        """Offsets in space at the start.
+
+        Args:
+            at: Foot of the reference.
+
+        Returns:
+            The offsets, (n, 3), length; given in two components they lie in the tangent plane
+            there.
+        """
         if self.offsets.shape[1] == 3:
             return np.asarray(self.offsets)
         first = at.basis[0] / np.linalg.norm(at.basis[0])

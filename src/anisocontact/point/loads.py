@@ -130,7 +130,15 @@ class PrescribedPath(Load):
             )
 
     def place(self, surface: Surface, t: float) -> Floats:
-        """Position of the path at time t, (3,)."""
+        """Position of the path.
+
+        Args:
+            surface: The surface it is on.
+            t: Time.
+
+        Returns:
+            The position, (3,), length.
+        """
         return _in_space(surface, self.path(t))
 
     def start(self, surface: Surface) -> Floats:
@@ -190,7 +198,15 @@ class DraggingSpring(Load):
         self._start = None if start is None else _place(start)
 
     def end(self, surface: Surface, t: float) -> Floats:
-        """Free end at time t, (3,)."""
+        """Free end of the spring.
+
+        Args:
+            surface: The surface it is on.
+            t: Time.
+
+        Returns:
+            Its position, (3,), length.
+        """
         return _in_space(surface, self.path(t))
 
     def start(self, surface: Surface) -> Floats:

@@ -95,11 +95,25 @@ class Strategy(Protocol):
     reduces: bool
 
     def obstacles(self, task: Task) -> Iterator[str]:
-        """Why it cannot solve the problem, a line each; collective."""
+        """Why it cannot solve the problem, a line each; collective.
+
+        Args:
+            task: What is to be solved.
+
+        Yields:
+            A line for each reason; none where it can.
+        """
         ...
 
     def costs(self, task: Task) -> Iterator[str]:
-        """Why it would not pay or not fit, although it can, a line each; collective."""
+        """Why it would not pay or not fit, although it can, a line each; collective.
+
+        Args:
+            task: What is to be solved.
+
+        Yields:
+            A line for each reason; none where it pays.
+        """
         ...
 
     def solver(
@@ -117,5 +131,8 @@ class Strategy(Protocol):
             note: Called with lines for the log.
             kept: What `IncrementSolver.persistent` gave in the run that goes on; empty for a new
                 one.
+
+        Returns:
+            What solves increments until it is closed.
         """
         ...

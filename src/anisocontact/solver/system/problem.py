@@ -342,7 +342,11 @@ class Problem(ComposedSystem, Uncopied):
         self.rotations.commit()
 
     def reduce_by(self, reduction: Reduction | None) -> None:
-        """Let something else answer for the bulk from the accepted state on; None for nobody."""
+        """Let something else answer for the bulk from the accepted state on.
+
+        Args:
+            reduction: What answers; the bulk itself again if None.
+        """
         self.whole.take_pending({})
         self.reduction = self.whole if reduction is None else reduction
 

@@ -70,7 +70,14 @@ class CyclicSymmetry:
             raise InputError(f"{self.tolerance!r} given, must be >= 0", "tolerance")
 
     def turning(self, groups: WholeGroups) -> Turning:
-        """The turn that brings the master to the slave: to which side, the meshes say."""
+        """The turn that brings the master to the slave: to which side, the meshes say.
+
+        Args:
+            groups: The cut faces, over all processes.
+
+        Returns:
+            The turn, by the angle of a sector.
+        """
         a, b, c = np.asarray(self.axis, dtype=float) / np.linalg.norm(self.axis)
         axis, angle = (float(a), float(b), float(c)), 2.0 * math.pi / self.sectors
         x, y, z = map(float, self.point)

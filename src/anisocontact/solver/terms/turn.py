@@ -56,7 +56,14 @@ class Turn(Rotation):
             raise InputError(f"it begins at {first:g}, must be 0", "amplitude")
 
     def share(self, fraction: float) -> float:
-        """The share of it that is done at a fraction of the step."""
+        """The share of it that is done at a fraction of the step.
+
+        Args:
+            fraction: Fraction of the step, 0 to 1.
+
+        Returns:
+            Share of angle and way; where an amplitude leads back it may fall.
+        """
         if self.amplitude is None:
             return fraction
         return float(LoadCurve(self.amplitude).at(fraction, self.duration, 0.0))
