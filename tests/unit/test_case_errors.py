@@ -245,8 +245,11 @@ def test_all_mistakes_of_a_file_are_listed(tmp_path, capsys, case_text):
     ("text", "says"),
     [
         ("title = \n", "line 1, column 9"),
+        ("E = 210 GPa\n", "(at line 1, column 9): E = 210 GPa"),
+        (f"a = {list(range(40))}, 2\n", "): ... 30, 31, 32, 33, 34, 35, 36, 37, 38, 39], 2"),
         ("a = [1, 2\nb = 3\n", "line 2"),
-        ("a = 1\na = 2\n", "line 2"),
+        ("a = 1\na = 2\n", "line 2, column 6): a = 2"),
+        ("[step]\n[step]\n", "[step]; where there are several each is [[step]]"),
         (f"a = {'9' * 5000}\n", "not TOML"),
         ("a = " + "[" * 5000, "case.toml"),
     ],

@@ -16,6 +16,10 @@ from anisocontact.case.checks import check
 from anisocontact.case.model import Case, case_type
 from anisocontact.case.registries import Registries
 
+#: Characters to either side of an error that a message has of a long line of a file.
+_AROUND = 40
+#: A table that stands for an entry of a list.
+_LIST = re.compile(r"\[{1,2}(contact|step|tie|cyclic)\]{1,2}")
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -187,9 +191,23 @@ def read_tables(path: Path) -> tuple[str, dict[str, Any]]:
     except UnicodeDecodeError as error:
         raise InputError(f"case file '{path}' is not UTF-8 text: byte {error.start}") from None
     except (tomllib.TOMLDecodeError, ValueError) as error:
-        raise InputError(f"case file '{path}' is not TOML: {error}") from None
+        raise _not_toml(path, text, error) from None
     except RecursionError:
         raise InputError(f"case file '{path}' is nested too deeply") from None
+
+
+def _not_toml(path: Path, text: str, error: ValueError) -> InputError:
+    """What is no TOML in a file, with the line that it is in, where the error names one."""
+    said = f"case file '{path}' is not TOML: {error}"
+    where = re.search(r"at line (\d+), column (\d+)", said)
+    if where is None:
+        return InputError(said)
+    line, column = text.split("\n")[int(where[1]) - 1].strip(), int(where[2])
+    first, last = max(0, column - _AROUND), column + _AROUND
+    shown = f"{'... ' * (first > 0)}{line[first:last]}{' ...' * (last < len(line))}"
+    twice = _LIST.fullmatch(line) if "Cannot" in said else None
+    cure = f"; where there are several each is [[{twice[1]}]]" if twice else ""
+    return InputError(f"{said}: {shown}{cure}")
 
 
 def without_null(schema: Any) -> Any:
