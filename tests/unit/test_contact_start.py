@@ -92,11 +92,18 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
     assert pressures[0] == pytest.approx(pressures[1], rel=1e-6)
 
 
-def test_surface_that_points_the_wrong_way_is_named() -> None:
-    """The normal of the plane points down, as that of the bottom of the block above it."""
-    said = r"'block.bottom' faces the same way .* are \(0, 0, -1\) and \(0, 0, -1\); turn"
+@pytest.mark.parametrize(
+    ("mortar", "place"), [(False, r".*"), (True, r"\(-?[\d.]+, -?[\d.]+, 0\)")]
+)
+def test_surface_that_points_the_wrong_way_is_named(mortar: bool, place: str) -> None:
+    """The normal of the plane points down, as that of the bottom of the block above it.
+
+    Requirement: it is said where, and what is zero but for round-off is zero.
+    """
+    said = rf"'block.bottom' faces the same way as its master: at {place} the normals .* are "
+    said += r"\(0, 0, -1\) and \(0, 0, -1\); turn"
     with pytest.raises(InputError, match=said):
-        Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()), mortar=False)
+        Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()), mortar=mortar)
 
 
 def test_group_on_the_wrong_side_is_named() -> None:

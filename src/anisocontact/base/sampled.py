@@ -11,6 +11,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import real
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import called
+from anisocontact.base.shown import shown
 
 
 def sampled(
@@ -53,7 +54,7 @@ def sampled(
         raise InputError(f"an array of shape {found.shape} {count}, {needed} needed", field)
     wrong = np.flatnonzero(~np.isfinite(found).all(axis=tuple(range(1, found.ndim))))
     if wrong.size:
-        where = ", ".join(f"{v:.4g}" for v in np.moveaxis(x, axis, 0)[wrong[0]])
-        text = f"{found[wrong[0]].tolist()} at ({where}) given, finite numbers needed"
+        where = shown(np.moveaxis(x, axis, 0)[wrong[0]])
+        text = f"{found[wrong[0]].tolist()} at {where} given, finite numbers needed"
         raise InputError(text, field)
     return found

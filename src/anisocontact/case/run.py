@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 from anisocontact.base.arrays import by_place
 from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.machine import lack
+from anisocontact.base.shown import shown
 from anisocontact.base.signals import interrupt, on_signals
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
@@ -302,7 +303,7 @@ def _iteration_line(progress: Progress) -> str:
 def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
     """One line for an accepted increment."""
     contacts = "; ".join(
-        f"{points_text(contact['points'])}  force {_force_text(contact['force'])}"
+        f"{points_text(contact['points'])}  force {shown(contact['force'])}"
         for contact in numbers["contacts"]
     )
     return (
@@ -321,21 +322,15 @@ def ran_off_lines(accepted: Accepted) -> list[str]:
     """A line for each contact with points that left the end of the master in an increment."""
     lines = []
     for name, points in accepted.ran_off.items():
-        first = ", ".join(f"{v:.4g}" for v in points[by_place(points)[0]])
+        first = shown(points[by_place(points)[0]])
         count = f"{len(points)} point{'s' * (len(points) > 1)}"
-        lines.append(f"  {name}: {count} ran off the end of the master, the first at ({first})")
+        lines.append(f"  {name}: {count} ran off the end of the master, the first at {first}")
     return lines
 
 
 def points_text(points: dict[str, int]) -> str:
     """Numbers of open, sticking and slipping points."""
     return " ".join(f"{name} {count}" for name, count in points.items())
-
-
-def _force_text(force: list[float]) -> str:
-    # What is nothing but round-off of the largest component is shown as zero.
-    least = 1e-9 * max(map(abs, force))
-    return f"({', '.join(f'{v if abs(v) > least else 0.0:.4g}' for v in force)})"
 
 
 @dataclass

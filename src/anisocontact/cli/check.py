@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from anisocontact.base.shown import shown
 from anisocontact.case import load
 from anisocontact.case.amplitudes import FunctionTable
 from anisocontact.cli.output import say
@@ -168,10 +169,8 @@ def _points(built: Built) -> Iterator[str]:
     """What was found for the names of points and edges; collective."""
     model, comm = built.problem.model, built.problem.comm
     x = model.space.tabulate_dof_coordinates()
-    least = 1e-9 * max(comm.allgather(float(np.abs(x).max(initial=0.0))))
+    size = max(comm.allgather(float(np.abs(x).max(initial=0.0))))
     for name in built.file.case.nodes:
         places = np.concatenate(comm.allgather(x[model.nodes(name)]))
-        shown = np.where(np.abs(places) > least, places, 0.0)[0]
-        at = ", ".join(f"{v:.6g}" for v in shown)
-        where = f"at ({at})" if len(places) == 1 else "on a line"
+        where = f"at {shown(places[0], 6, size)}" if len(places) == 1 else "on a line"
         yield f"nodes     {name}: {len(places)} {where}"

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from anisocontact.base.errors import ModelWarning, tell_script
+from anisocontact.base.shown import shown
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.contact_pair import TOUCHING
 from anisocontact.contact.defaults import FINER, STIFF
@@ -282,11 +283,11 @@ def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[
         overlap = initial_overlap(contact, size)
         if overlap is None or overlap.depth <= contact.slave_points.beside:
             continue
-        place = ", ".join(f"{v:.4g}" for v in overlap.point)
+        place = shown(overlap.point, size=size)
         found.append(
             f"{name}: the bodies overlap by {overlap.depth:.3g} at the start, "
             f"{100.0 * overlap.depth / size:.2g}% of the facet size, at {overlap.count} points, "
-            f"most at ({place}); the first increment pushes them apart, {cure} lets them just touch"
+            f"most at {place}; the first increment pushes them apart, {cure} lets them just touch"
             + _flat(contact, overlap.depth)
         )
     return found

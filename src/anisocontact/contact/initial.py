@@ -10,6 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.arrays import by_place
 from anisocontact.base.errors import InputError
+from anisocontact.base.shown import shown
 from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State
@@ -227,12 +228,8 @@ def _refuse(contact: Beginning, bad: Flags, text: str, field: str, normal: Float
     count = comm.allreduce(len(vectors))
     if len(everywhere):
         first = everywhere[by_place(everywhere[:, :3])[0]]
-        point, outward, met = map(_shown, first.reshape(3, 3))
+        place, *normals = first.reshape(3, 3)
+        outward, met = map(shown, normals)
+        point = shown(place, size=contact.slave_points.size)
         message = text.format(count=count, point=point, outward=outward, normal=met)
         raise InputError(message, field)
-
-
-def _shown(vector: Floats) -> str:
-    # What is nothing but round-off of the largest component is shown as zero.
-    least = 1e-9 * float(np.abs(vector).max())
-    return "(" + ", ".join(f"{v if abs(v) > least else 0.0:.4g}" for v in vector) + ")"

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.shown import shown
 from anisocontact.contact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.surfaces import Surface
@@ -44,10 +45,10 @@ def points_on_tips(contacts: Sequence[Contact]) -> list[str]:
                 continue
             lean = _lean(surface, tip, axis, BESIDE * size)
             if lean > LEANING:
-                at = ", ".join(f"{v:.4g}" for v in tip)
+                at = shown(tip)
                 found.append(
                     f"contact of {contact.name}: a slave point is on the tip of the surface, at "
-                    f"({at}), where it has no normal: one of those around is taken by rounding, "
+                    f"{at}, where it has no normal: one of those around is taken by rounding, "
                     f"and presses the point aside, by {lean:.0%} of its force; let the tip be "
                     "between the points, or round it"
                 )

@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.fenicsx import vertex_gradients
+from anisocontact.base.shown import shown
 from anisocontact.mesh.model import Model
 
 #: Volume at a corner over the mean of the corners, negative beyond which a cell is folded there:
@@ -36,10 +37,10 @@ def folded_cells(model: Model) -> list[str]:
         places = np.concatenate(comm.allgather(here))
         count = comm.allreduce(len(own))
         if len(places):
-            at = ", ".join(f"{v:.4g}" for v in places[0])
+            at = shown(places[0])
             said.append(
                 f"body {name!r}: {len(places)} of {count} curved cells are folded over at a "
-                f"corner, the first at ({at}), as a node inside one of its edges is within a "
+                f"corner, the first at {at}, as a node inside one of its edges is within a "
                 "quarter of the edge from its end, or far beside it: stresses and contact "
                 "pressures there are wrong; put these nodes near the middles, or mesh finer where "
                 "faces are round"

@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import basix, boxes_around, geometry
+from anisocontact.base.shown import shown
 from anisocontact.mesh.model import Model
 
 #: Middles that are looked for at once: cells of more would take many times the mesh.
@@ -46,10 +47,10 @@ def overlapping_cells(model: Model, body: str) -> str:
     twice = np.logical_or.reduce(comm.allgather(twice))
     if not twice.any():
         return ""
-    first = ", ".join(f"{v + 0.0:.4g}" for v in places[twice][0])
+    first = shown(places[twice][0])
     return (
         f"body {body!r}: {twice.sum()} of {len(twice)} cells have their middle in another cell of "
-        f"it, the first at ({first}): its material is there twice, with twice the stiffness and "
+        f"it, the first at {first}: its material is there twice, with twice the stiffness and "
         "twice the force of a contact; take one of both out of the mesh, or make them bodies of "
         "their own"
     )

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.shown import shown
 from anisocontact.interface import FAILURE, Response, State
 from anisocontact.point.device import Action, Device
 from anisocontact.point.foot import Foot, foot
@@ -156,7 +157,7 @@ class PointBalance:
         """
         here = foot(self.interface.surface, q[:3])
         if not here.reached:
-            raise StepError(f"no point of the surface is under {shown(q[:3])}, it ends before")
+            raise StepError(f"no point of the surface is under {shown(q[:3], 6)}, it ends before")
         turn = float(q[3]) if self._turns else 0.0
         arms = turned_arms(self.group.orientation, self.pose.arms, self.pose.foot, here, turn)
         response = self.interface.update(self.state, q[:3] + arms.vectors, self.dt)
@@ -164,12 +165,12 @@ class PointBalance:
         if failed.size:
             i = int(failed[0])
             raise StepError(
-                f"point {shown(q[:3] + arms.vectors[i])}: {FAILURE[response.failure[i]]}"
+                f"point {shown(q[:3] + arms.vectors[i], 6)}: {FAILURE[response.failure[i]]}"
             )
         if not (np.isfinite(response.traction).all() and np.isfinite(response.tangent).all()):
             raise StepError(
-                f"with the reference at {shown(q[:3])} the traction or its tangent is not finite; "
-                "stiffnesses may be too far apart"
+                f"with the reference at {shown(q[:3], 6)} the traction or its tangent is not "
+                "finite; stiffnesses may be too far apart"
             )
         return self._assembled(q, here, arms, response, turn)
 
@@ -259,8 +260,3 @@ class PointBalance:
         d_moment = n @ d_total
         d_moment[:3] += total @ here.d_normal
         return float(total @ n) / length, d_moment / length
-
-
-def shown(x: Floats) -> str:
-    """A point in a message."""
-    return "(" + ", ".join(f"{v:.6g}" for v in x) + ")"

@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.shown import shown
 from anisocontact.base.typed import typed
 from anisocontact.interface import State
 from anisocontact.point.balance import (
@@ -18,7 +19,6 @@ from anisocontact.point.balance import (
     PointInterface,
     StepError,
     Trial,
-    shown,
 )
 from anisocontact.point.device import Committed, Device
 from anisocontact.point.foot import foot
@@ -139,7 +139,7 @@ class _Runner:
         under = foot(surface, start)
         if not under.reached:
             raise InputError(
-                f"it begins at {shown(start)}, where there is no surface under it", "load"
+                f"it begins at {shown(start, 6)}, where there is no surface under it", "load"
             )
         x = under.position + max(under.gap, 0.0) * under.normal
         pose = GroupPose(x, foot(surface, x), self.group.arms(under))

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.point.balance import PointBalance, StepError, Trial, shown
+from anisocontact.base.shown import shown
+from anisocontact.point.balance import PointBalance, StepError, Trial
 from anisocontact.point.foot import foot
 
 
@@ -29,7 +30,7 @@ def pressed(balance: PointBalance, guess: Floats) -> Trial:
     target = balance.normal_force
     here = foot(balance.interface.surface, guess[:3])
     if not here.reached:
-        raise StepError(f"no point of the surface is under {shown(guess[:3])}")
+        raise StepError(f"no point of the surface is under {shown(guess[:3], 6)}")
 
     def miss(gap: float) -> tuple[float, float, Trial]:
         q = guess.copy()

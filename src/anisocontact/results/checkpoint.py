@@ -23,6 +23,7 @@ from numpy.lib.recfunctions import repack_fields
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
+from anisocontact.base.shown import shown
 from anisocontact.base.whole_files import replacing
 from anisocontact.mesh import Model
 from anisocontact.results.files import Disk
@@ -320,8 +321,8 @@ class _MatchedRows:
             InputError: Names one that was not found.
         """
         if len(self.missing):
-            at = ", ".join(f"{v:.6g}" for v in self._position[self.missing[0]])
-            text = f"{what} not as in the run that is to go on: nothing was at ({at}){more}"
+            at = shown(self._position[self.missing[0]], 6)
+            text = f"{what} not as in the run that is to go on: nothing was at {at}{more}"
             raise InputError(text)
 
 

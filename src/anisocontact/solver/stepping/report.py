@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import by_place
+from anisocontact.base.shown import shown
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
@@ -184,8 +185,8 @@ class StoppedError(RuntimeError):
         self.points: Floats = np.zeros((0, 3)) if points is None else points
         where = ""
         if len(self.points):
-            first = ", ".join(f"{v:.6g}" for v in self.points[by_place(self.points)[0]])
-            where = f"; {len(self.points)} slave points failed, the first at ({first})"
+            first = shown(self.points[by_place(self.points)[0]], 6)
+            where = f"; {len(self.points)} slave points failed, the first at {first}"
         elif culprits and culprits[0].why not in reason:
             where = f"; {culprits[0]}"
         tried = f"; {tried}" if tried else ""

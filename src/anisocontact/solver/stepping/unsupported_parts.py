@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags
 from anisocontact.base.errors import InputError
+from anisocontact.base.shown import shown
 from anisocontact.contact import Contact
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.system.assembly import Assembly
@@ -65,9 +66,9 @@ class UnsupportedParts:
         for part in untouched:
             motions = unconstrained_modes(part, stiffness, bodies.scale, rows, self._unknowns)
             if motions:
-                at = ", ".join(f"{v:.4g}" for v in part.middle)
+                at = shown(part.middle)
                 raise InputError(
-                    f"nothing holds the body around ({at}): {motions}; no condition does, and no "
+                    f"nothing holds the body around {at}: {motions}; no condition does, and no "
                     "contact touches it: let it touch at the start, or move it there with "
                     "conditions",
                     field,

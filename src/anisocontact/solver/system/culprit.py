@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from anisocontact.base.shown import shown
+
 
 @dataclass(frozen=True)
 class Culprit:
@@ -39,10 +41,10 @@ class Culprit:
 
     def __str__(self) -> str:
         """One line."""
-        at = ", ".join(f"{v:.6g}" for v in self.position)
+        at = shown(self.position, 6)
         slave = f"{self.contact}, facet {self.facet}, " if self.contact else ""
         history = f"; status {' '.join(self.statuses)}" if self.statuses else ""
-        return f"{slave}({at}): {self.why}{history}"
+        return f"{slave}{at}: {self.why}{history}"
 
 
 class LostError(RuntimeError):

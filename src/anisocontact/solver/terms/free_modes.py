@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
+from anisocontact.base.shown import shown
 from anisocontact.contact import Contact
 from anisocontact.mesh import Idealisation, Model
 from anisocontact.mesh.connected_components import component_of_nodes
@@ -89,8 +90,9 @@ class ConnectedBody:
     @property
     def name(self) -> str:
         """Names of the bodies in one, and where it is if it is a piece of them."""
-        place = ", ".join(f"{v + 0.0:.3g}" for v in self.centre)
-        return " + ".join(self.parts) + ("" if self.whole else f", the piece around ({place})")
+        return " + ".join(self.parts) + (
+            "" if self.whole else f", the piece around {shown(self.centre, 3)}"
+        )
 
     def has(self, nodes: Ints | Locals, comm: Any) -> bool:
         """Whether one of local nodes is a node of it on any rank; collective."""
@@ -264,8 +266,7 @@ def _directions(word: str, vectors: Floats) -> str:
     if len(axes) == len(basis):
         *rest, last = axes
         return f"{word} {', '.join(rest)}{' and ' if rest else ''}{last}"
-    shown = ["(" + ", ".join(f"{v + 0.0:.3g}" for v in vector) + ")" for vector in basis]
-    return f"{word} {' and '.join(shown)}"
+    return f"{word} {' and '.join(shown(vector, 3) for vector in basis)}"
 
 
 def _within(e: Floats, basis: Floats) -> bool:

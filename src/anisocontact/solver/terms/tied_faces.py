@@ -12,6 +12,7 @@ import scipy
 from anisocontact.base.array_types import Flags, Floats, Ints, Sparse
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Vec
+from anisocontact.base.shown import shown
 from anisocontact.base.typed import typed
 from anisocontact.contact import facet_size
 from anisocontact.contact.reachable import NodePairs
@@ -138,10 +139,10 @@ class TiedFaces:
             nodes = np.unique(groups.groups[tie.slave].facets.nodes % len(groups.x))
             off = np.setdiff1d(nodes, one.nodes[one.covered])
             if len(off):
-                at = ", ".join(f"{v:.4g}" for v in groups.x[off[0]])
+                at = shown(groups.x[off[0]])
                 lines.append(
                     f"tie[{i}]: {len(off)} of {len(nodes)} nodes of {tie.slave!r} are not tied: "
-                    f"beside {tie.master!r} or farther off than the tolerance, the first at ({at})"
+                    f"beside {tie.master!r} or farther off than the tolerance, the first at {at}"
                 )
         return lines
 
