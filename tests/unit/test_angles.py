@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -113,3 +115,21 @@ def test_an_angle_that_turns_nothing_is_taken() -> None:
     assert make_directions("constant", vector=(1, 0, 0), angle=2e-313)
     with pytest.raises(InputError, match=r"angle: 1e\+60 given"):
         make_directions("constant", vector=(1, 0, 0), angle=1e60)
+
+
+def test_many_turns_in_degrees_stay_what_they_are():
+    """Requirement: degrees may be many turns, as the reference of `Turn` says, also in what is made
+    of it by `dataclasses.replace`: a step makes its rotations anew, with its duration. Radian that
+    is given stays one that is looked at."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    from anisocontact.solver import LoadCurve, Step, Turn
+
+    spin = {"die": {"rz_deg": LoadCurve(lambda t: t, 1080.0)}, "roll": {"ry_deg": 1080.0}}
+    step = Step("spin", 40, motion=spin, rotation={"b.top": Turn((0, 0, 1), angle_deg=720.0)})
+    for made in (step, replace(step, increments=80), pickle.loads(pickle.dumps(step.rotation))):
+        turn = (made if isinstance(made, dict) else made.rotation)["b.top"]
+        assert turn.angle == 4.0 * math.pi
+    again = replace(step, duration=2.0)
+    assert again.motion["roll"]["ry"] == again.motion["die"]["rz"].value == 6.0 * math.pi
+    with pytest.raises(InputError, match=r"^angle: 9 given in radian"):
+        replace(turn, angle=9.0)

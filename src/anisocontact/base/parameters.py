@@ -18,6 +18,17 @@ from anisocontact.base.words import meant
 _SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}
 
 
+class OfDegrees(float):
+    """An angle in radian that was given in degrees, of which many turns are no slip.
+
+    What `dataclasses.replace` makes of a rotation or a step is given the angle taken over.
+
+    Example:
+        >>> OfDegrees(20.0)
+        20.0
+    """
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A parameter of an entry.
@@ -212,11 +223,13 @@ def in_radian(
             text = f"given with {p.name}_deg, one of the two is allowed"
             raise InputError(text, field=f"{path}{p.name}")
         if degrees is not None:
-            turned = [math.radians(v) for v in check(p, degrees, f"{path}{p.name}_deg")]
+            checked = check(p, degrees, f"{path}{p.name}_deg")
+            turned = [OfDegrees(math.radians(v)) for v in checked]
             result[p.name] = turned if p.kind == "array" else turned[0]
         elif radian is not None:
             for angle in check(p, radian, f"{path}{p.name}"):
-                check_radian(angle, f"{path}{p.name}")
+                if not isinstance(radian, OfDegrees):
+                    check_radian(angle, f"{path}{p.name}")
     return result
 
 
@@ -230,7 +243,7 @@ def check_radian(angle: float, field: str) -> None:
     Raises:
         InputError: It is more than a full turn; the line says how degrees are written.
     """
-    if abs(angle) > FULL_TURN:
+    if abs(angle) > FULL_TURN and not isinstance(angle, OfDegrees):
         name = field.rpartition(".")[2]
         text = (
             f"{angle:g} given in radian, more than a full turn; {name}_deg = {angle:g} is degrees"

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import PrescribedValue, check_prescribed, history_of
+from anisocontact.base.course import LoadCurve, PrescribedValue, check_prescribed, history_of
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.one_history import OneHistory
+from anisocontact.base.parameters import OfDegrees
 from anisocontact.base.typed import is_number, typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
@@ -256,11 +257,18 @@ def turns_in_radian(
             continue
         with within(where):
             check_prescribed(given)
-        history = history_of(given)
         if name in COMPONENTS[3:]:
-            registry.check_radian(history.value, where)
-        found[component] = history.scaled(math.radians(1.0)) if in_degrees else given
+            registry.check_radian(given.value if isinstance(given, LoadCurve) else given, where)
+        found[component] = _of_degrees(given) if in_degrees else given
     return found
+
+
+def _of_degrees(given: PrescribedValue) -> PrescribedValue:
+    """A turn in radian, marked as one that was given in degrees."""
+    turned = history_of(given).scaled(math.radians(1.0))
+    if isinstance(turned, LoadCurve):
+        return replace(turned, value=OfDegrees(turned.value))
+    return OfDegrees(turned)
 
 
 def component_number(name: str, field: str) -> int:
