@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import RunWarning
+from anisocontact.base.fenicsx import ufl
 from anisocontact.bulk import ThermalExpansion, make_material
 from anisocontact.case import load
 from anisocontact.case.build import build
@@ -20,6 +23,8 @@ E, NU, EXPANSION, HEAT = 200.0, 0.3, 1e-4, 100.0
 HOOKE = {"E": E, "nu": NU}
 SHEAR, LAME = E / 2 / (1 + NU), E * NU / (1 + NU) / (1 - 2 * NU)
 CLAMPED = {f"bar.{side}": dict.fromkeys("xyz", 0.0) for side in ("bottom", "top")}
+SIDES = ("left", "right", "front", "back")
+HELD_ALL_OVER = CLAMPED | {f"bar.{side}": dict.fromkeys("xyz", 0.0) for side in SIDES}
 
 ROD = """
 [mesh.box.rod]
@@ -27,11 +32,10 @@ origin = [0, 0, 0]
 size = [10, 1, 1]
 cells = [10, 1, 1]
 [material.rod]
-model = "{model}"
+model = "linear-elastic"
 E = 1000.0
 nu = 0.3
 expansion = 1e-4
-{more}
 [surface.floor]
 shape = "plane"
 point = [0, 0, 0]
@@ -54,11 +58,15 @@ temperature = {{ rod = 50 }}
 """
 
 
-def _bar(model: str, given: dict[str, float], held: dict[str, Any], increments: int) -> Accepted:
+def _bar(model: str, given: dict[str, Any], held: dict[str, Any], increments: int) -> Accepted:
+    """A bar of a material by its name."""
+    return _heated(make_material(model, **given), held, increments)
+
+
+def _heated(material: Any, held: dict[str, Any], increments: int) -> Accepted:
     """A bar of two cells a side that is heated, and cooled by half."""
     mesh = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
-    law = ThermalExpansion(make_material(model, **given), EXPANSION)
-    problem = Problem(mesh, {"bar": law})
+    problem = Problem(mesh, {"bar": ThermalExpansion(material, EXPANSION)})
     steps = [
         Step("heat", increments, held, temperature={"bar": HEAT}),
         Step("cool", increments, held, temperature={"bar": 0.5 * HEAT}),
@@ -66,10 +74,10 @@ def _bar(model: str, given: dict[str, float], held: dict[str, Any], increments: 
     return [*Solver(problem, steps).run()][-1]
 
 
-def _rod(tmp_path: Any, increments: int, model: str = "linear-elastic", more: str = "") -> Accepted:
+def _rod(tmp_path: Any, increments: int) -> Accepted:
     """A rod that sticks and slips on a floor as it is heated."""
     case = tmp_path / "case.toml"
-    case.write_text(ROD.format(model=model, more=more, increments=increments))
+    case.write_text(ROD.format(increments=increments))
     return [*build(load(case)).solver.run()][-1]
 
 
@@ -81,8 +89,7 @@ def test_a_body_that_is_held_all_over(model: str) -> None:
     neo-Hooke, with s = 1 + a dT. Tolerance: rounding; nothing moves, so that the mean of both ends
     is exact for any law.
     """
-    held = {f"bar.{side}": dict.fromkeys("xyz", 0.0) for side in ("left", "right", "front", "back")}
-    last = _bar(model, HOOKE, CLAMPED | held, 1)
+    last = _bar(model, HOOKE, HELD_ALL_OVER, 1)
     strain = 0.5 * EXPANSION * HEAT
     s = 1.0 + strain
     change = -3.0 * math.log(s)  # ln J of I/s
@@ -143,11 +150,125 @@ def test_a_single_increment_is_balanced_by_the_laws(tmp_path: Any) -> None:
     assert abs(energies["residual"]) < 0.05 * energies["external"]
 
 
-def test_a_history_tells_no_energy(tmp_path: Any) -> None:
-    """Requirement: where a heated body has a history there is no energy, in place of a zero.
+PLASTIC = {"yield_stress": 1.0}
+VISCOELASTIC = {"g": [0.3], "k": [0.2], "tau": [0.5]}
 
-    Friction is known all the same.
+
+@pytest.mark.parametrize(
+    ("model", "more", "order"),
+    [
+        ("viscoelastic", VISCOELASTIC, 2),
+        ("viscoelastic", VISCOELASTIC | {"strain": "logarithmic"}, 2),
+        ("plastic", PLASTIC, 2),
+        ("plastic", PLASTIC | {"hardening": 20.0}, 1),
+        ("plastic", PLASTIC | {"kinematic": 20.0, "strain": "logarithmic"}, 1),
+    ],
+)
+def test_bodies_with_a_history(model: str, more: dict[str, Any], order: int) -> None:
+    """Requirement: a clamped bar that relaxes or flows as it is heated has a balance of energy.
+
+    Source: first law; the temperature gives `s^2 (3 W - P : F/s) ds` or `-tr(sigma) a dT`.
+    Tolerance: order two, and one where hardening is dissipated at the ends of increments, at least
+    0.85 of it from 4 to 16 increments; in 16 less than 1.5 % of the work is open, of which the
+    history dissipates at least 0.4.
     """
-    energies = _rod(tmp_path, 2, "plastic", "yield_stress = 3.0").energies
+    with warnings.catch_warnings():  # four increments are few, as is said
+        warnings.simplefilter("ignore", RunWarning)
+        runs = [_bar(model, HOOKE | more, CLAMPED, n).energies for n in (4, 16)]
+    left = [abs(one["residual"]) for one in runs]
+    assert left[0] > 4.0 ** (0.85 * order) * left[1]
+    assert left[1] < 0.015 * runs[1]["external"]
+    assert runs[1]["inelastic"] > 0.4 * runs[1]["external"]
+
+
+class Zener:
+    """A spring beside a spring behind a dashpot, in UFL; it may keep its energies to itself."""
+
+    linear, young = False, E
+
+    def __init__(self, small: bool) -> None:
+        self.small_strain, self.history = small, {"flown": (3, 3)}
+
+    def _strain(self, u: Any) -> Any:
+        h = ufl.grad(u)
+        return ufl.sym(h) if self.small_strain else 0.5 * (h + h.T + h.T * h)
+
+    def advance(self, u: Any, before: Any) -> dict[str, Any]:
+        rate = before.dt / 0.5
+        return {"flown": (before["flown"] + rate * self._strain(u)) / (1.0 + rate)}
+
+    def _stress(self, u: Any, before: Any) -> tuple[Any, Any]:
+        strain = self._strain(u)
+        return E * strain, 0.5 * E * (strain - self.advance(u, before)["flown"])
+
+    def piola(self, u: Any, before: Any) -> Any:
+        first, second = self._stress(u, before)
+        stress = first + second
+        return stress if self.small_strain else (ufl.Identity(3) + ufl.grad(u)) * stress
+
+
+class Told(Zener):
+    """The same with its energies."""
+
+    def stored(self, u: Any, before: Any) -> Any:
+        first, second = self._stress(u, before)
+        return 0.5 / E * ufl.inner(first, first) + 1.0 / E * ufl.inner(second, second)
+
+    def dissipated(self, u: Any, before: Any) -> Any:
+        flown = self.advance(u, before)["flown"] - before["flown"]
+        return ufl.inner(self._stress(u, before)[1], flown)
+
+
+@pytest.mark.parametrize("small", [True, False])
+def test_a_history_of_the_users(small: bool) -> None:
+    """Requirement: the same of a material in UFL that tells its energies.
+
+    Source: first law. Tolerance: order one, as it dissipates at the ends of increments, 0.9 of it.
+    """
+    runs = [_heated(Told(small), CLAMPED, n).energies for n in (4, 16)]
+    left = [abs(one["residual"]) for one in runs]
+    assert left[0] > 4.0**0.9 * left[1] > 0.0
+    assert left[1] < 0.015 * runs[1]["external"]
+
+
+def test_what_a_held_body_dissipates() -> None:
+    """Requirement: dissipation counts per volume without stress, `s^3` of the reference.
+
+    Source: where nothing moves the strain is `(s^-2 - 1)/2 I`, and what flows in an increment is
+    known. Tolerance: rounding. Without `s^3` it is off by 2 %.
+    """
+    expected, flown = 0.0, 0.0
+    for temperature in (0.5 * HEAT, HEAT, 0.75 * HEAT, 0.5 * HEAT):
+        s = 1.0 + EXPANSION * temperature
+        strain = 0.5 * (s**-2 - 1.0)
+        now = (flown + 0.5 / 0.5 * strain) / (1.0 + 0.5 / 0.5)
+        expected += s**3 * 3.0 * 0.5 * E * (strain - now) * (now - flown)
+        flown = now
+    last = _heated(Told(False), HELD_ALL_OVER, 2)
+    assert last.energies["inelastic"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_what_was_dissipated_stays(tmp_path: Any) -> None:
+    """Requirement: a body without stress that cools dissipates nothing.
+
+    Source: dissipation is counted per volume that the body has then. The bar flows as it is
+    pulled, is let go of and heated: with the volume of now in the integral 3 a dT of it came.
+    """
+    given = HOOKE | {"yield_stress": 1.0, "strain": "logarithmic"}
+    held = {"bar.bottom": {"z": 0.0}, "bar.left": {"x": 0.0}, "bar.front": {"y": 0.0}}
+    mesh = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    problem = Problem(mesh, {"bar": ThermalExpansion(make_material("plastic", **given), EXPANSION)})
+    steps = [
+        Step("pull", 2, held | {"bar.top": {"z": 0.02}}),
+        Step("release", 1, held),
+        Step("heat", 1, held, temperature={"bar": HEAT}),
+    ]
+    *_, before, after = (one.energies["inelastic"] for one in Solver(problem, steps).run())
+    assert before > 0.01
+    assert after == pytest.approx(before, rel=1e-12)
+
+
+def test_a_history_that_tells_none() -> None:
+    """Requirement: where a body does not say what it stores there is no energy, and no zero."""
+    energies = _heated(Zener(True), CLAMPED, 2).energies
     assert np.isnan([energies["elastic"], energies["residual"]]).all()
-    assert energies["friction"] > 0.0

@@ -10,7 +10,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.compiled_forms import compiled_expression
 from anisocontact.base.fenicsx import basix, fem, ufl
-from anisocontact.mesh import Idealisation, Model
+from anisocontact.bulk.expansion import Heated
+from anisocontact.mesh import Model
 
 #: In front of the names of internal variables among arrays that are kept.
 _VARIABLE = "history/"
@@ -24,13 +25,16 @@ class AtPoints:
         body: Its name.
         history: Internal variables by name with their shape, () of a number.
         degree: Degree of the quadrature at whose points they live.
-        ideal: How gradients are seen; as those of the mesh if left out.
+        heated: How gradients are seen where the body expands; as those of the mesh if left out.
 
     Attributes:
         points: The points in the reference cell, (points, 3).
         variables: Internal variables by name, DOLFINx functions.
         stored: Energy per reference volume that the accepted state has stored, a function.
-        dissipated: What has been dissipated until then.
+        dissipated: What has been dissipated until then, per volume of the reference.
+        warming: What a stretch by temperature gives to the accepted state, energy per volume
+            without stress, where the body expands; see `Warming`.
+        warmth: The same of the state that `take_warmth` was asked for.
     """
 
     linear = False
@@ -43,11 +47,12 @@ class AtPoints:
         body: str,
         history: Mapping[str, tuple[int, ...]],
         degree: int,
-        ideal: Idealisation | None = None,
+        heated: Heated | None = None,
     ) -> None:
         self._mesh = model.mesh
         self._cells = np.sort(model.cells(body))
-        self._ideal = ideal or model.idealisation
+        self._heated = heated
+        self._ideal = heated or model.idealisation
         owned = model.mesh.topology.index_map(model.idealisation.dim).size_local
         self._owned = int(np.searchsorted(self._cells, owned))
         cell = model.mesh.basix_cell()
@@ -56,6 +61,8 @@ class AtPoints:
         self.variables = {name: self._zero(shape) for name, shape in history.items()}
         self._stress = self._zero((3, 3))
         self.stored, self.dissipated = self._zero(()), self._zero(())
+        self.warming: Any = self._zero(()) if heated else None
+        self.warmth: Any = self._zero(()) if heated else None
         places = self._at_points(ufl.SpatialCoordinate(self._mesh))
         self.places: Floats = places.eval(self._mesh, self._cells).reshape(-1, 3)
 
@@ -70,6 +77,19 @@ class AtPoints:
 
     def _trial_stress(self) -> Floats:
         """True stress at the points, of the displacement now."""
+        raise NotImplementedError
+
+    def take_warmth(self, trial: bool) -> None:
+        """Let `warmth` be what a stretch by temperature gives, where the body expands.
+
+        Args:
+            trial: Whether to the last trial; else to the last accepted increment.
+        """
+        given = self._trial_warmth() if trial else self._read(self.warming)
+        self._write(self.warmth, given)
+
+    def _trial_warmth(self) -> Floats:
+        """What a stretch by temperature gives to the displacement now, (n,), energy/volume."""
         raise NotImplementedError
 
     def means(self, name: str) -> tuple[Locals, Floats]:
@@ -100,8 +120,8 @@ class AtPoints:
 
     def _named(self) -> dict[str, Any]:
         named = {f"{_VARIABLE}{name}": v for name, v in self.variables.items()}
-        energies = {"stored": self.stored, "dissipated": self.dissipated}
-        return named | {"stress": self._stress} | energies
+        named |= {"stress": self._stress, "stored": self.stored, "dissipated": self.dissipated}
+        return named | ({"warming": self.warming} if self.warming else {})
 
     def _zero(self, shape: tuple[int, ...]) -> Any:
         cell = self._mesh.basix_cell()

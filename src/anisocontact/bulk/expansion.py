@@ -86,20 +86,22 @@ class Heated(Idealisation):
 
     Attributes:
         stretch: What it has at its temperature without stress where strain is finite, UFL; else 1.
+        stretches: Its derivative by the temperature, 1/temperature, UFL; that of the strain at
+            small strain.
     """
 
     def __init__(self, law: ThermalExpansion, model: Model) -> None:
         self._ideal = model.idealisation
         self._small = law.small_strain
         self._temperature: Any = fem.Constant(model.mesh, 0.0)
-        expands: Any = law.expansion * self._temperature
+        self.stretches: Any = law.expansion
         if law.profile is not None:
             share = fem.Function(fem.functionspace(model.mesh, ("Lagrange", model.order)))
             of = _profile(law.profile)
             on_all(model.mesh.comm, lambda: share.interpolate(of))
-            expands = expands * share
-        self._strain = expands
-        self.stretch: Any = 1.0 if self._small else 1.0 + expands
+            self.stretches = law.expansion * share
+        self._strain = self.stretches * self._temperature
+        self.stretch: Any = 1.0 if self._small else 1.0 + self._strain
 
     @property
     def temperature(self) -> float:
@@ -109,6 +111,24 @@ class Heated(Idealisation):
     def set_temperature(self, value: float) -> None:
         """Take over the temperature over that without stress."""
         self._temperature.value = value
+
+    def warmth(self, stored: Any, stress: Any, gradient: Any) -> Any:
+        """What a stretch s by temperature gives where displacements and internal variables stay.
+
+        It is `d(s^3 W(F/s)) / ds = s^2 (3 W - P : F/s)`, without `s^2`, and `-tr(P)` at small
+        strain.
+
+        Args:
+            stored: Energy W per volume without stress.
+            stress: First Piola-Kirchhoff stress P of `F/s`, (3, 3).
+            gradient: `F/s - I`, (3, 3); all of them UFL.
+
+        Returns:
+            UFL, energy/volume.
+        """
+        if self._small:
+            return -ufl.tr(stress)
+        return 3.0 * stored - ufl.inner(stress, ufl.Identity(3) + gradient)
 
     def gradient(self, u: Any) -> Any:
         """As of `Idealisation`."""

@@ -13,8 +13,9 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.hyperelastic import cauchy_stress
-from anisocontact.mesh import Idealisation, Model
+from anisocontact.mesh import Model
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ class BodyHistory(AtPoints):
         u: Displacement, a DOLFINx function.
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the variables live.
-        ideal: How gradients are seen; as those of the mesh if left out.
+        heated: How gradients are seen where the body expands; as those of the mesh if left out.
 
     Raises:
         InputError: The material advances other variables than it has.
@@ -114,9 +115,9 @@ class BodyHistory(AtPoints):
         u: Any,
         dt: Any,
         degree: int,
-        ideal: Idealisation | None = None,
+        heated: Heated | None = None,
     ) -> None:
-        super().__init__(model, body, material.history, degree, ideal)
+        super().__init__(model, body, material.history, degree, heated)
         self._material = material
         self.before = Before(self.variables, dt)
         after = dict(material.advance(u, self.before))
@@ -130,9 +131,12 @@ class BodyHistory(AtPoints):
         told: Any = material
         self.stores = hasattr(told, "stored")
         if self.stores:
-            lost = self.dissipated + seen(told.dissipated(u, self.before))
+            lost = seen(told.dissipated(u, self.before)) * (heated.stretch**3 if heated else 1.0)
             stored = seen(told.stored(u, self.before))
-            parts += [(self.stored, stored), (self.dissipated, lost)]
+            parts += [(self.stored, stored), (self.dissipated, self.dissipated + lost)]
+            if heated:
+                stress, gradient = seen(self.piola(u)), seen(ufl.grad(u))
+                parts.append((self.warming, heated.warmth(stored, stress, gradient)))
         self._kept = [variable for variable, _ in parts]
         # one expression: what the parts share is compiled and evaluated once
         components = [one for _, part in parts for one in _components(part)]
@@ -149,6 +153,9 @@ class BodyHistory(AtPoints):
 
     def _trial_stress(self) -> Floats:
         return self._now()[self._kept.index(self._stress)]
+
+    def _trial_warmth(self) -> Floats:
+        return self._now()[self._kept.index(self.warming)]
 
     def _now(self) -> list[Floats]:
         """What is kept of an accepted increment, of the displacement now, each (points, ...)."""

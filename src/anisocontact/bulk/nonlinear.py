@@ -20,6 +20,7 @@ from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import CellPressures
+from anisocontact.bulk.warming import Warming
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -58,6 +59,7 @@ class NonlinearBulk:
         #: As of `CellPressures`.
         self.pressures = self._pressures.of
         self.histories = self._histories(model, given, full)
+        self._warming = Warming(model, self.heated, self.histories, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
         laws = {**given, **self.histories}
         forms = _Forms(model, laws, self.heated, self._u, v, du, dx, full)
@@ -67,11 +69,13 @@ class NonlinearBulk:
         tangent = ufl.derivative(work, self._u, du) + forms.slope
         self._tangent = FormMatrix(compiled(tangent, self._comm))
         self._pressures.add_tangent(self._tangent.matrix)
-        self._model, self._energy_form = model, forms.energy
-        self._energy = None if forms.energy is None else compiled(forms.energy, self._comm)
-        self._dissipated = compiled(forms.dissipated, self._comm) if forms.dissipated else None
+        self._model, self._energy_form = model, forms.elastic + forms.stored
+        self._elastic, self._stored, self._dissipated = (
+            compiled(form, self._comm) if form else None
+            for form in (forms.elastic, forms.stored, forms.dissipated)
+        )
         #: Whether `energy` is that of all bodies: every material has one.
-        self.stores = forms.energy is not None
+        self.stores = forms.told
         self.stiffness = self._tangent.matrix
         self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
@@ -126,17 +130,25 @@ class NonlinearBulk:
             The energy over all ranks, force times length; 0 where a material has a stress but no
             energy.
         """
-        if self._energy is None:
+        if not self.stores:
             return 0.0
         self._set(u)
-        own = fem.assemble_scalar(self._energy) + self._pressures.energy()
-        return float(self._comm.allreduce(own))
+        return self._total(self._stored) + self._without_histories()
+
+    def _without_histories(self) -> float:
+        """The same but of what materials with a history store, at the displacement of now."""
+        of_pressures = float(self._comm.allreduce(self._pressures.energy()))
+        return self._total(self._elastic) + of_pressures
+
+    def _total(self, form: Any) -> float:
+        """A form of rank 0 over all ranks; 0 where there is none."""
+        return 0.0 if form is None else float(self._comm.allreduce(fem.assemble_scalar(form)))
 
     def heating(self, start: Vec, u: Vec, before: Mapping[str, float]) -> tuple[float, float]:
         """Energy that changes of temperature give to bodies that are held, `int dW/dT dT`.
 
         The mean of both is exact where W is quadratic in displacements and temperatures, as the
-        mean of forces is for their work.
+        mean of forces is for their work. Of bodies with a history it is `Warming`'s.
 
         Args:
             start: Displacement of the nodes this rank owns at the last accepted state, length.
@@ -148,7 +160,7 @@ class NonlinearBulk:
             has no energy.
         """
         now = {name: body.temperature for name, body in self.heated.items()}
-        if self._energy is None or now == before:
+        if not self.stores or now == before:
             return 0.0, 0.0
 
         def stored(place: Vec, temperatures: Mapping[str, float]) -> float:
@@ -156,10 +168,14 @@ class NonlinearBulk:
                 self.heated[name].set_temperature(value)
             self._set(place)
             self._pressures.evaluate()
-            return self.energy(place)
+            return self._without_histories()
 
-        first, then = (-stored(place, before) + stored(place, now) for place in (start, u))
-        return first, then
+        rises = {name: value - before[name] for name, value in now.items()}
+        first = stored(start, now) - stored(start, before) + self._warming(rises, trial=False)
+        then = -stored(u, before) + stored(u, now)
+        for body in self._points:
+            body.evaluate()
+        return first, then + self._warming(rises, trial=True)
 
     @cached_property
     def _of_cells(self) -> CellIntegrals:
@@ -175,15 +191,13 @@ class NonlinearBulk:
             Force times length; NaN where a material has a stress but no energy.
         """
         self.set_pressures(u)
-        if self._energy_form is None:
+        if not self.stores:
             return np.full(_cells(self._model), np.nan)
         return self._of_cells() + self._pressures.cell_energies(_cells(self._model))
 
     def dissipated(self) -> float:
         """What materials have dissipated until the accepted state, over all ranks."""
-        if self._dissipated is None:
-            return 0.0
-        return float(self._comm.allreduce(fem.assemble_scalar(self._dissipated)))
+        return self._total(self._dissipated)
 
     def tangent(self, out: Mat, *, again: bool = False) -> None:
         """Write the tangent of the last `force` into a matrix.
@@ -309,8 +323,10 @@ class _Forms:
     Attributes:
         work: Linear form.
         slope: What of its derivative the work does not show: that of laws at points.
-        energy: What bodies store; None where a material has a stress but no energy.
-        dissipated: What they have dissipated; 0 where no material has a history.
+        elastic: What bodies without a history store; 0 where there are none.
+        stored: What the others store.
+        dissipated: What they have dissipated.
+        told: Whether that is all: no material has a stress but no energy.
     """
 
     def __init__(
@@ -325,8 +341,8 @@ class _Forms:
         full: int,
     ) -> None:
         weight = model.idealisation.weight(model.mesh)
-        work, energy, self.slope, self.dissipated = 0, 0, 0, 0
-        told = True
+        work, self.elastic, self.stored, self.slope, self.dissipated = 0, 0, 0, 0, 0
+        self.told = True
         for i, name in enumerate(model.body_names()):
             if name not in laws:
                 continue
@@ -336,7 +352,7 @@ class _Forms:
             volume = weight * stretch**3
             for density, degree in _stored(ideal, law, u):
                 part = volume * density * dx(i, degree=full if degree is None else degree)
-                energy += part
+                self.elastic += part
                 work += ufl.derivative(part, u, v)
             if isinstance(law, BodyPoints):
                 work += weight * stretch**2 * law.work(v) * here
@@ -344,13 +360,12 @@ class _Forms:
             elif not (law.linear or hasattr(law, "energy")):
                 stress = stretch**2 * ideal.seen(law.piola(u), u)
                 work += weight * ufl.inner(stress, ideal.gradient(v)) * here
-                told &= isinstance(law, AtPoints)
+                self.told &= isinstance(law, AtPoints)
             if isinstance(law, AtPoints):
-                # what a temperature gives to a history, laws do not tell
-                told &= law.stores and name not in heated
-                energy += volume * law.stored * here
-                self.dissipated += volume * law.dissipated * here
-        self.work, self.energy = work, energy if told else None
+                self.told &= law.stores
+                self.stored += volume * law.stored * here
+                self.dissipated += weight * law.dissipated * here
+        self.work = work
 
 
 def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:

@@ -17,11 +17,12 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.processes import on_all
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.bulk.materials import constant, small_strain
 from anisocontact.bulk.strain import STRAINS, Strain
 from anisocontact.bulk.volume import Volume, volume_of
-from anisocontact.mesh import Idealisation, Model
+from anisocontact.mesh import Model
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +150,7 @@ class BodyPoints(AtPoints):
         u: Displacement, a DOLFINx function.
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the law is evaluated.
-        ideal: How gradients are seen; as those of the mesh if left out.
+        heated: How gradients are seen where the body expands; as those of the mesh if left out.
         pressure: That of the cells, UFL, where the law is elastic against a change of volume.
 
     Attributes:
@@ -164,20 +165,31 @@ class BodyPoints(AtPoints):
         u: Any,
         dt: Any,
         degree: int,
-        ideal: Idealisation | None = None,
+        heated: Heated | None = None,
         pressure: Any = None,
     ) -> None:
-        super().__init__(model, body, law.history, degree, ideal)
+        super().__init__(model, body, law.history, degree, heated)
         self._law, self._dt = law, dt
         self.small_strain = small_strain(law)
         self._volume, self._pressure = volume_of(law, u), pressure
         self._gradient = self._at_points(self._ideal.seen(ufl.grad(u), u))
         self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
         self._true_stress = self._at_points(self._ideal.seen(cauchy_stress(self, u), u))
+        self._energy_now = self._zero(())
+        self._of_heat: Any = self._heat_expression(heated, u) if heated else None
         self._last: tuple[Strain, PointResult]
         self.evaluate()
         self.write_tangent()
         self.stores = self._last[1].stored is not None
+
+    def _heat_expression(self, heated: Heated, u: Any) -> Any:
+        """What a stretch by temperature gives, and the volume without stress over the reference.
+
+        What is elastic against changes of volume is not in it: pressures of cells have that.
+        """
+        gradient = heated.seen(ufl.grad(u), u)
+        given = heated.warmth(self._energy_now, self._piola, gradient)
+        return self._at_points(ufl.as_vector([given, heated.stretch**3]))
 
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress at the points, (3, 3), UFL, stress."""
@@ -211,6 +223,16 @@ class BodyPoints(AtPoints):
     def _trial_stress(self) -> Floats:
         return np.asarray(self._true_stress.eval(self._mesh, self._cells), dtype=np.float64)
 
+    def _trial_warmth(self) -> Floats:
+        return self._heat()[:, 0]
+
+    def _heat(self) -> Floats:
+        """Values of `_heat_expression` at the last trial, (points, 2)."""
+        _, result = self._last
+        if result.stored is not None:
+            self._write(self._energy_now, result.stored)
+        return np.asarray(self._of_heat.eval(self._mesh, self._cells)).reshape(-1, 2)
+
     def write_tangent(self) -> None:
         """Bring the tangent to where the stress is."""
         strain, result = self._last
@@ -226,5 +248,10 @@ class BodyPoints(AtPoints):
             self._write(variable, np.asarray(result.after[name]))
         if result.stored is not None:
             self._write(self.stored, result.stored)
-        if result.dissipated is not None:
-            self._write(self.dissipated, self._read(self.dissipated) + result.dissipated)
+        lost = result.dissipated
+        if self._of_heat is not None:
+            given, volume = self._heat().T
+            self._write(self.warming, given)
+            lost = lost if lost is None else volume * lost
+        if lost is not None:
+            self._write(self.dissipated, self._read(self.dissipated) + lost)

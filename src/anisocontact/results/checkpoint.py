@@ -33,7 +33,7 @@ NAME = "checkpoint.npz"
 #: Folder of the pieces of several processes.
 PIECES = "checkpoint"
 #: Changes with the meaning of the file.
-FORMAT = 25
+FORMAT = 26
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
 #: What is said where points are not found by another number of processes.

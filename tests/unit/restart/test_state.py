@@ -106,6 +106,14 @@ VARIANTS = {
             'temperature = { block = 3 }\ndisplacement = { "block.top" = { x = 0.02'
         ),
     },
+    "heated, with a history": {
+        'model = "linear-elastic"': (
+            'model = "viscoelastic"\ng = [0.3]\nk = [0.2]\ntau = [0.5]\nexpansion = 1e-3'
+        ),
+        'displacement = { "block.top" = { x = 0.02': (
+            'temperature = { block = 3 }\ndisplacement = { "block.top" = { x = 0.02'
+        ),
+    },
     "unsupported": {
         "origin = [0, 0, 0]": "origin = [0, 0, 0.05]",
         'displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }': (
