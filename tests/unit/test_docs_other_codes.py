@@ -40,6 +40,15 @@ def test_deck_is_looked_into_and_runs(tmp_path, capsys):
     assert 0.297 < -along[-1] / normal[-1] < 0.3 * (1.0 + 1e-9)
 
 
+def test_deck_is_converted(tmp_path, capsys, monkeypatch):
+    """Requirement: what `convert` prints, word for word."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "press.inp").write_text(block("text"))
+    command, printed = block("{code-block} console").split("\n", 1)
+    assert main(command.split()[2:]) == 0
+    assert capsys.readouterr().out == printed
+
+
 def test_keys_of_the_tables_are_understood():
     """What the page says of words in messages."""
     assert "coefficients" in (elsewhere("mu") or "")
