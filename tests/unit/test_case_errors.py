@@ -43,6 +43,8 @@ WRONG = [
      "2.0 given, must be > 0 and < 1"),
     ("E = 1000", "E = -1000", "material.block.E", "-1000 given"),
     ("E = 1000", "E = 0", "material.block.E", "> 0"),
+    ('model = "linear-elastic"\nE = 1000\nnu = 0.3', 'model = "orthotropic"\nE = [9, 3, 1]\n'
+     "nu = [0.3, 0.3, 9]\nG = [1, 1, 1]", "material.block", "the Poisson's ratios"),
     ("E = 1000", 'E = "stiff"', "material.block.E", "a number needed"),
     ("E = 1000", "E = 1979-05-27", "material.block.E", "number"),
     ("E = 1000", f"E = 1{'0' * 400}", "material.block.E", "given"),

@@ -62,7 +62,8 @@ REACTION = 'reaction = "block.top"'
     ("old", "new", "line"),
     [
         ('event = "sliding"', 'event = "slides"', "step[1].until.event: "),
-        ('"block.bottom", event', '"block.side", event', "contacts: block.bottom"),
+        ('"block.bottom", event', '"block.side", event', "given; did you mean 'block.bottom'?"),
+        ('"block.bottom", event', '"x", event', "given; allowed: block.bottom on floor, "),
         ('reaction = "block.top"', 'reaction = "block.left"', "groups with supports: block.top"),
         (REACTION, 'probe = "mid"', "step[0].until.probe: "),
         (REACTION, 'probe = "middle", quantity = "stres"', "stres"),

@@ -14,7 +14,7 @@ import numpy as np
 
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
@@ -76,10 +76,8 @@ class _Directed(Hyperelastic):
 
     def __init__(self, *, field: str = "", **parameters: Any) -> None:
         given = registry.values(self.entry, parameters, field)
-        try:
+        with within(field):
             self._stiffness = self._of({name: np.array(v) for name, v in given.items()})
-        except InputError as error:
-            raise InputError(str(error), field=field or self.entry.name) from None
         #: Largest of the moduli: a penalty is to be stiff against every direction.
         self.young = float(1.0 / np.linalg.inv(self._stiffness).diagonal()[:3].min())
         self.linear = _STRAINS[int(given["strain"][0])] == "small"

@@ -13,6 +13,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.python_file import called
 from anisocontact.base.until import Until
+from anisocontact.base.words import hint
 from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
@@ -276,8 +277,9 @@ def _contact(problem: Problem, until: Until, field: str) -> Contact:
     found = [c for c in problem.contacts if until.contact in (c.name, c.slave)]
     if len(found) == 1:
         return found[0]
-    known = ", ".join(contact.name for contact in problem.contacts) or "none"
-    raise InputError(f"{until.contact!r} given, contacts: {known}", f"{field}.contact")
+    known = [contact.name for contact in problem.contacts]
+    near = hint(until.contact or "", [*known, *(c.slave for c in problem.contacts)], "allowed")
+    raise InputError(f"{until.contact!r} given; {near}", f"{field}.contact")
 
 
 #: When it is so, by the numbers of points by status.
