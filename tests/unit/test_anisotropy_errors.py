@@ -177,6 +177,11 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: Adhesion(stiffness=(-1, 1), directions=MARKS),
         "stiffness: (-1, 1) given",
     ),
+    "word of another argument": (
+        lambda: Adhesion(stiffness=1, direction=MARKS),
+        "direction: adhesion model 'elastic' has no parameter 'direction', allowed: directions, "
+        "directions_on, stiffness; did you mean 'directions'?",
+    ),
     "one surface of two": (
         lambda: Friction(model="he-curnier", alpha=(0.2, 0.1, 0.1), directions=MARKS),
         "friction.directions_second: missing; friction model 'he-curnier' needs",

@@ -200,6 +200,10 @@ WRONG = {
         lambda m: Problem(m, dict.fromkeys(m.body_names(), STEEL), symmetry="block.left"),
         "symmetry: 'block.left' given, a list of texts needed",
     ),
+    "one of a list that is something else": (
+        lambda m: Problem(m, dict.fromkeys(m.body_names(), STEEL), [STEEL]),
+        r"contacts\[0\]: LinearElastic given, Contact needed",
+    ),
     "laws without a surface": (
         lambda m: Contact(m, "block.bottom", PAIR, mortar=False),
         "master: ContactLaw given, a text, Surface, Interface or MovingSurface needed",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -120,13 +120,16 @@ class Entry:
 Value = float | int | bool | str | Sequence[float]
 
 
-def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str, list[float]]:
+def values(
+    e: Entry, given: Mapping[str, object], prefix: str = "", others: Collection[str] = ()
+) -> dict[str, list[float]]:
     """Checked parameter values of an entry, as the core takes them.
 
     Args:
         e: The entry.
         given: Values by parameter name, angles also by `<name>_deg`; None counts as left out.
         prefix: Dotted path put before the parameter's name in messages.
+        others: What else may be written beside the parameters, for the message of an unknown one.
 
     Returns:
         A list of numbers for every parameter, defaults filled in; angles in radian.
@@ -144,9 +147,10 @@ def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str,
     given = in_radian(e.parameters, given, prefix)
     for name in given:
         if name not in known:
-            near = meant(name, sorted(known))
+            names = sorted({*known, *others})
+            near = meant(name, names)
             hint = f"; did you mean {near!r}?" if near else ""
-            allowed = ", ".join(sorted(known)) or "none"
+            allowed = ", ".join(names) or "none"
             raise InputError(
                 f"{e.kind} {e.name!r} has no parameter {name!r}, allowed: {allowed}{hint}",
                 field=f"{path}{name}",

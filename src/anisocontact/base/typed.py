@@ -253,8 +253,12 @@ def _fits_items(of: tuple[Any, ...], value: Mapping[Any, Any]) -> bool:
 
 
 def _wrong_part(place: str, value: Any, hint: Any) -> tuple[str, Any, Any]:
-    """Where a value is wrong, what is there and what is needed: one of several by name, or all."""
+    """Where a value is wrong, what is there and what is needed: one of several, or all."""
     origin, of = typing.get_origin(hint), typing.get_args(hint)
+    if isinstance(origin, type) and isinstance(value, list | tuple) and _is_list(origin):
+        items = [] if of[0] in _CALLED or origin is tuple else list(enumerate(value))
+        wrong = next(((i, one) for i, one in items if not _fits(of[0], one)), None)
+        return (place, value, hint) if wrong is None else (f"{place}[{wrong[0]}]", wrong[1], of[0])
     if not (isinstance(origin, type) and issubclass(origin, Mapping)):
         return place, value, hint
     if not isinstance(value, Mapping) or not all(_fits(of[0], key) for key in value):

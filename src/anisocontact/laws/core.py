@@ -23,6 +23,9 @@ from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
 Named = tuple[str, dict[str, list[float]]]
+#: Arguments of laws beside their parameters.
+_SIDED = ("directions", "directions_on")
+_OF_FRICTION = (*_SIDED, "directions_second", "directions_second_on", "sliding_rule")
 
 
 def _named(
@@ -30,9 +33,10 @@ def _named(
     name: str,
     parameters: dict[str, object],
     field: str,
+    others: tuple[str, ...] = (),
 ) -> Named:
     e = registry.entry(registry_of(), name, field)
-    return name, registry.values(e, parameters)
+    return name, registry.values(e, parameters, others=others)
 
 
 @typed
@@ -106,7 +110,7 @@ class Adhesion(CopiedByArguments):
         directions_on: str = "master",
         **parameters: object,
     ) -> None:
-        self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model")
+        self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model", _SIDED)
         entry = registry.entry(registry.adhesion_models(), model)
         _need_directions("adhesion", directions, entry, self.named)
         self.directions = directions
@@ -174,7 +178,7 @@ class Friction(CopiedByArguments):
         rule = registry.entry(registry.sliding_rules(), sliding_rule, "friction.sliding_rule")
         of_rule = {key for p in rule.parameters for key in (p.name, f"{p.name}_deg")}
         own = {k: v for k, v in parameters.items() if k not in of_rule}
-        self.named = _named(registry.friction_models, model, own, "friction.model")
+        self.named = _named(registry.friction_models, model, own, "friction.model", _OF_FRICTION)
         self.rule: Named = (
             sliding_rule,
             registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
