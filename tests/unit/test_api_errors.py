@@ -208,6 +208,10 @@ WRONG = {
         lambda m: Contact(m, "block.bottom", PAIR, mortar=False),
         "master: ContactLaw given, a text, Surface, Interface or MovingSurface needed",
     ),
+    "no law": (
+        lambda m: Contact(m, "block.bottom", PLANE),
+        "law: nothing given, Friction, ContactLaw or another law needed",
+    ),
     "laws with a surface": (
         lambda m: Contact(m, "block.bottom", "base.top", law=INTERFACE, mortar=False),
         "law: Interface given, ContactLaw, Friction, AdhesionAndFriction or PythonLaw needed",

@@ -211,7 +211,7 @@ def _laws(law: object) -> ContactLaw:
     """Laws without a surface."""
     if not isinstance(law, ContactLaw):
         given = "nothing" if law is None else type(law).__name__
-        raise InputError(f"{given} given, ContactLaw needed", "law")
+        raise InputError(f"{given} given, Friction, ContactLaw or another law needed", "law")
     return law
 
 
