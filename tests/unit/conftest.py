@@ -23,6 +23,24 @@ def unpictured(case_text: str) -> str:
 
 
 @pytest.fixture
+def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """What `check` says of a case file with a word of it changed: one line, no internal error."""
+
+    def said(text: str, old: str, new: str, count: int = -1) -> str:
+        from anisocontact.cli import main
+
+        path = tmp_path / "case.toml"
+        assert old in text
+        path.write_text(text.replace(old, new, count))
+        assert main(["check", str(path)]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith("error: ") and "internal" not in line
+        return line
+
+    return said
+
+
+@pytest.fixture
 def stop_after() -> Callable[..., None]:
     """Let runs get a signal, that of Ctrl-C, behind so many accepted increments."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -85,17 +86,9 @@ REACTION = 'reaction = "block.top"'
         ("value = 10.0", "value = -10.0", "step[0].until.value: -10.0 given without along"),
     ],
 )
-def test_mistakes(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, line: str
-):
+def test_mistakes(refused: Callable[..., str], old: str, new: str, line: str):
     """Requirement: one line that says where, before the run."""
-    path = tmp_path / "case.toml"
-    assert old in CASE
-    path.write_text(CASE.replace(old, new))
-    assert main(["check", str(path)]) == 2
-    error = capsys.readouterr().err
-    assert line in error
-    assert "Traceback" not in error
+    assert line in refused(CASE, old, new)
 
 
 class _Stops(Listener):
