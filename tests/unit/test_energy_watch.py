@@ -31,8 +31,8 @@ class _Points:
 def watch(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A watch of a contact of 10 open and 10 sticking points, with overlaps at the start or not."""
 
-    def begun(overlap: bool = False) -> tuple[EnergyWatch, _Points]:
-        points = _Points(10, 10, 0)
+    def begun(overlap: bool = False, sticking: int = 10) -> tuple[EnergyWatch, _Points]:
+        points = _Points(20 - sticking, sticking, 0)
         problem: Any = SimpleNamespace(
             contacts=[points],
             bulk=SimpleNamespace(stores=True),
@@ -68,6 +68,19 @@ def test_what_most_points_do_is_the_cause(watch: Any, numbers: Any, cause: str) 
     points.numbers = numbers
     found = made.after({"external": 10.0, "residual": 1.0, "regularisation": 0.0}, ran_off=False)
     assert (found.share, found.cause) == (pytest.approx(0.1), cause)
+
+
+def test_first_and_last_points_are_all_of_the_contact(watch: Any) -> None:
+    """Requirement: one point in 20 is the cause where nothing touched before, or does so now.
+
+    Source: a ball that comes to a large face touches at a few of its nodes; all that is open in the
+    balance is of the way on which there was no force.
+    """
+    for sticking, numbers in ((0, (19, 1, 0)), (1, (20, 0, 0))):
+        made, points = watch(sticking=sticking)
+        points.numbers = numbers
+        energies = {"external": 10.0, "residual": 1.0, "regularisation": 0.0}
+        assert made.after(energies, ran_off=False).cause == Cause.TOUCHED
 
 
 def test_an_overlap_is_the_cause_of_the_first_increment_alone(watch: Any) -> None:

@@ -192,12 +192,17 @@ class EnergyWatch:
         return float(self._problem.comm.allreduce(_ROUND_OFF * (forces + held)))
 
     def _changed(self) -> tuple[bool, bool]:
-        """Whether many points have begun or ended contact, or sliding, and more than the other."""
+        """Whether many points have begun or ended contact, or sliding, and more than the other.
+
+        Where nothing touched before, or does so now, any number of points is all of the contact.
+        """
         before, self._counts = self._counts, self._counted()
         change = np.abs(self._counts - before)
         touched = int(change[:, 0].sum())
         slid = (int(change[:, 1:].sum()) - touched) // 2
         many = MANY * int(before.sum())
+        if not (before[:, 1:].any() and self._counts[:, 1:].any()):
+            many = 0.0
         return touched > many and touched >= slid, slid > many
 
     def _counted(self) -> Ints:

@@ -14,6 +14,8 @@ from anisocontact.solver.terms.turn import Turn
 
 #: Places along a step at which the pace of a rotation is looked at.
 _PLACES = 64
+#: Share of a load by which it may change along a step and still counts as one that stays.
+FAINT = 0.01
 
 
 def check_known(step: Step, names: list[str]) -> None:
@@ -93,10 +95,19 @@ class Drive:
         """Whether no motion is prescribed along the step."""
         return self._turn is None and self._motion.rests
 
-    @property
-    def load_rests(self) -> bool:
-        """Whether the load stays as it is along the step."""
-        return self._load.rests
+    def load_rests(self, scale: Floats) -> bool:
+        """Whether the load stays as it is along the step, but for a share `FAINT` of it.
+
+        A component that is let go begins with what held it, next to nothing where nothing pushed.
+
+        Args:
+            scale: What turns are taken for lengths by, 1 for translations, (6,).
+        """
+        if self._load.varies:
+            return self._load.rests
+        start, end = self._load.start / scale, self._load.end / scale
+        size = max(np.linalg.norm(start), np.linalg.norm(end))
+        return bool(np.linalg.norm(end - start) <= FAINT * size)
 
     @property
     def last_load(self) -> Floats:

@@ -219,9 +219,10 @@ class RigidBodies(Term):
 
     @property
     def loads_rest(self) -> bool:
-        """Whether loads on them stay as they are along the step, and no springs act."""
+        """Whether loads on them hardly change along the step, and no springs act."""
         sprung = any(body.springs.any() for body in self.bodies)
-        return not sprung and all(drive.load_rests for drive in self._drives.values())
+        rest = (drive.load_rests(self._scales[body]) for body, drive in self._drives.items())
+        return not sprung and all(rest)
 
     def spring_forces(self) -> Floats:
         """Forces of the springs at the trial as the rows have them, (size,), force.
