@@ -47,13 +47,7 @@ class NonlinearBulk:
         # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
         full = 2 * model.order
         given: Mapping[str, Any] = {name: without_expansion(law) for name, law in materials.items()}
-        heating = {
-            name: law for name, law in materials.items() if isinstance(law, ThermalExpansion)
-        }
-        self.heated: dict[str, Heated] = {}
-        for name, law in heating.items():
-            with within(f"material.{name}"):
-                self.heated[name] = Heated(law, model)
+        self.heated: dict[str, Heated] = _heated(materials, model)
         dx = body_measure(model)
         self._pressures = CellPressures(model, given, self._u, dx, self.heated)
         #: As of `CellPressures`.
@@ -267,6 +261,16 @@ class NonlinearBulk:
     def _set(self, u: Vec) -> None:
         self._u.x.array[: len(u.array_r)] = u.array_r
         self._u.x.scatter_forward()
+
+
+def _heated(materials: Mapping[str, Material], model: Model) -> dict[str, Heated]:
+    """Bodies that expand with their temperature, by name."""
+    found = {}
+    for name, law in materials.items():
+        if isinstance(law, ThermalExpansion):
+            with within(f"material.{name}"):
+                found[name] = Heated(law, model)
+    return found
 
 
 def _check_stiff(model: Model, materials: Mapping[str, Material], diagonal: Vec) -> None:

@@ -188,6 +188,11 @@ class MeshedMaster(Master):
         names = [f.name for f in fields(FacetProjections)]
         return FacetProjections(*(kept[f"projection.{name}"] for name in names))
 
+    def _displaced(self, u: Floats) -> Nodes:
+        """Nodes of both sides at displacements of the local nodes, (nodes, 3), length."""
+        moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
+        return Nodes(self.sides.reference + moved, moved)
+
     def _go_to(self, now: Floats) -> None:
         """Bring the surface to positions of the nodes, (nodes, 3), length."""
         self._nodes = Nodes(now, now - self.sides.reference)

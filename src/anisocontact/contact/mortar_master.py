@@ -30,7 +30,6 @@ from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
-from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.prescribed_nodes import PrescribedNodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.self_contact import SelfContactSides
@@ -174,8 +173,7 @@ class MortarMaster(MeshedMaster):
             self._then = thens[0]
             if known is not None:
                 self._replaced = known, thens[1]
-        moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
-        self._nodes = Nodes(self.sides.reference + moved, moved)
+        self._nodes = self._displaced(u)
         self._hint = self.sides.project(self._nodes.now, self._hint)
         self._at = self._placed()
         return anew
@@ -393,9 +391,9 @@ class MortarMaster(MeshedMaster):
         if self._self_contact is not None:
             self._self_contact.restore(kept["sides"])
         self._count_as_then(kept["state"])
-        moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
-        self._go_to(self.sides.reference + moved)
-        self._nodes = Nodes(self._nodes.now, moved)
+        there = self._displaced(u)
+        self._go_to(there.now)
+        self._nodes = there
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed()
         return kept

@@ -14,6 +14,7 @@ What the derivative is multiplied with enters no state that is evaluated.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -37,6 +38,23 @@ LEAST_PART = 1e-9
 #: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends; so
 #: does a way that is as many times shorter.
 OVERSHOOT = 4.0
+
+
+@dataclass(frozen=True)
+class _Closing:
+    """Points of a trial that close a gap in the increment, flags of all points, (n,).
+
+    Attributes:
+        closing: All of them.
+        weak: Those whose trial says where the gap ends.
+        astray: The others, as of `Semismooth._astray`.
+        part: Part of the increment in which a point is in contact, for any.
+    """
+
+    closing: Flags
+    weak: Flags
+    astray: Flags
+    part: Floats
 
 
 class Semismooth(Multipliers):
@@ -132,49 +150,76 @@ class Semismooth(Multipliers):
             State from which the law with `ratio` times the penalties answers as the trial does;
             gap and slip that would make the trial exact, which move no point, (n, 3), length.
         """
-        given, found = self.answers(step)
-        ratio, closing = self._ratios(step), np.isfinite(step.closeness)
-        part = step.closeness.clip(LEAST_PART, 1.0)
-        astray = self._astray(step)
-        weak = closing & ~astray
+        answers, ratio, gaps = self.answers(step), self._ratios(step), self._closing(step)
+        state = self._shifted(step, answers, ratio, gaps)
+        return state, self._missing_way(step, answers, ratio, gaps)
+
+    def _shifted(
+        self, step: ContactTrial, answers: tuple[Floats, Floats], ratio: Floats, gaps: _Closing
+    ) -> State:
+        """State from which the law with `ratio` times the penalties answers as the trial does.
+
+        Args:
+            step: The trial.
+            answers: Multipliers and what is answered to them, as of `Multipliers.answers`.
+            ratio: As of `_ratios`.
+            gaps: Points whose gap closes.
+        """
+        given, found = answers
         times = ratio.copy()
-        times[weak, 1] = step.closeness[weak].clip(1.0, ratio[weak, 1])
-        times[astray, 1] /= part[astray]
+        times[gaps.weak, 1] = step.closeness[gaps.weak].clip(1.0, ratio[gaps.weak, 1])
+        times[gaps.astray, 1] /= gaps.part[gaps.astray]
         shifted = given + (1.0 - times[:, [0, 1, 1, 1]]) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
         shifted[apart, 0] = np.minimum(shifted[apart, 0], 0.0)
         shifted[apart, 1:] = 0.0
-        state, trial = step.start.copy(), step.answer.state
+        state = step.start.copy()
         state["multiplier"] = shifted[:, 0]
         state["stiffer"] = (1.0 + step.start["stiffer"]) * ratio / self.ratio - 1.0
+        if self.tangential:
+            state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
+            state["gap"][gaps.astray] = 0.0
+        return state
+
+    def _missing_way(
+        self, step: ContactTrial, answers: tuple[Floats, Floats], ratio: Floats, gaps: _Closing
+    ) -> Floats:
+        """Gap and slip that would make the trial exact, (n, 3), length; arguments of `_shifted`."""
+        given, found = answers
         left = np.where(np.isfinite(step.rigidity), 1.0, 1.0 - 1.0 / ratio)
-        left[weak, 1] = 1.0
-        left[astray, 1] = 1.0 / part[astray]
+        left[gaps.weak, 1] = 1.0
+        left[gaps.astray, 1] = 1.0 / gaps.part[gaps.astray]
         deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
         deep /= self.factors[0] * self._penalties[0]
         deep[step.immovable] = 0.0
-        slip = deep[:, None] * step.now.normal
+        way = deep[:, None] * step.now.normal
         if self.tangential:
-            state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
+            trial = step.answer.state
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
             stiffness = self.factors[1] * self._penalties[1] * (1.0 + step.start["stiffer"][:, 1:])
             held = step.flexed(step.before.turned_to(step.now, given[:, 1:] - found[:, 1:]))
             held /= stiffness
             # slip that stays is felt to its square: what stands for force is told by force
-            by_force = closing | np.isfinite(step.rigidity[:, 1])
+            by_force = gaps.closing | np.isfinite(step.rigidity[:, 1])
             more = left[:, 1:] * np.where(by_force[:, None], held, more)
             compliant = 1.0 - step.kept[:, 1:]
-            compliant[astray, 0] = 1.0 / ratio[astray, 1]
+            compliant[gaps.astray, 0] = 1.0 / ratio[gaps.astray, 1]
             more += compliant * step.flexed(step.now.vector(trial["stored"])) / stiffness
             # the way of a gap, which friction is divided by, does not grow with what is no motion
-            way = self.way(step.start, step.answer.gap)[weak] * part[weak]
-            more[weak] -= (deep[weak] / way)[:, None] * held[weak]
-            state["gap"][astray] = 0.0
-            slip += np.where(step.remembers, more, 0.0)
-        slip[apart] = 0.0
-        return state, slip
+            weak = gaps.weak
+            of_gap = self.way(step.start, step.answer.gap)[weak] * gaps.part[weak]
+            more[weak] -= (deep[weak] / of_gap)[:, None] * held[weak]
+            way += np.where(step.remembers, more, 0.0)
+        way[step.answer.pressure == 0.0] = 0.0
+        return way
+
+    def _closing(self, step: ContactTrial) -> _Closing:
+        """The points of a trial whose gap closes."""
+        closing, astray = np.isfinite(step.closeness), self._astray(step)
+        part = step.closeness.clip(LEAST_PART, 1.0)
+        return _Closing(closing, closing & ~astray, astray, part)
 
     def _ratios(self, step: ContactTrial) -> Floats:
         """What penalties are multiplied with at the points, normal and tangential, (n, 2).

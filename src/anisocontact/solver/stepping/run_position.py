@@ -72,6 +72,19 @@ class RunPosition:
             numbers["step"], numbers["time"], control, bool(numbers["begun"]), stopped=stopped
         )
 
+    @property
+    def ended_at(self) -> float | None:
+        """Fraction of the step at which an event has ended it; None where none has."""
+        return self.stopped.get(self.step)
+
+    def after(self, step: Step) -> Self:
+        """The beginning of the next step, once this one is done or an event has ended it."""
+        end = self.ended_at
+        time = self.time + (1.0 if end is None else end) * step.duration
+        found = self.beginning(self.step + 1, time, self.control.limits)
+        found.stopped = self.stopped
+        return found
+
     def persistent(self) -> Arrays:
         """Where the run goes on, as arrays by name; `before` belongs to the nodes."""
         numbers = asdict(self.control)

@@ -221,7 +221,9 @@ class Solver(Uncopied):
                     for text in (*unread, *warnings.of(accepted)):
                         warn(text)
                     yield accepted
-                self._go_on(step)
+                if (end := self.place.ended_at) is not None:
+                    self.problem.end_at(end)
+                self.place = self.place.after(step)
         except (Exception, KeyboardInterrupt):
             self.problem.together.met()
             raise
@@ -229,16 +231,6 @@ class Solver(Uncopied):
             self._newton, self._kept = None, {}
             if not self.problem.together.apart:
                 newton.close()
-
-    def _go_on(self, step: Step) -> None:
-        """Go to the step after one that is done, or that an event has ended."""
-        place, stopped = self.place, self.place.stopped
-        factor = stopped.get(place.step, 1.0)
-        if place.step in stopped:
-            self.problem.end_at(factor)
-        time = place.time + factor * step.duration
-        self.place = RunPosition.beginning(place.step + 1, time, self.limits)
-        self.place.stopped = stopped
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
         """Part by part to the end of the step, or to its event."""

@@ -22,6 +22,8 @@ OVERSHOOT = 2.0
 ENOUGH = 3
 #: Share of what springs carry beyond which loads have to be what they stand against.
 DRIVEN = 0.5
+#: Share of the loads on a body beyond which contact counts as what carries them.
+CARRIED = 0.5
 #: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
 PRESSED = 0.01
 
@@ -266,6 +268,21 @@ class FreeBody:
         """
         closed = any(bool(closed_points(contact, at_start).any()) for contact in self.contacts)
         return any(self.contacts[0].space.mesh.comm.allgather(closed))
+
+    def carries(self, count: int, nothing: float) -> bool:
+        """Whether contact carries loads on it in the trial, or more than round-off; collective.
+
+        Args:
+            count: Number of the local nodes.
+            nothing: Force up to which it is round-off.
+        """
+        force = np.zeros((count, 3))
+        for contact in self.contacts:
+            contact.add_force(force)
+        squared = float((force[self.body.nodes] ** 2).sum())
+        carried = np.sqrt(self.contacts[0].space.mesh.comm.allreduce(squared))
+        load = float(np.linalg.norm(self.force))
+        return bool((load > 0.0 and carried > CARRIED * load) or carried > nothing)
 
     def _count(self, *statuses: str) -> int:
         stiff = [contact for contact in self.contacts if _sticks_all_ways(contact)]

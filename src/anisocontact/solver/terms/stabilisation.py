@@ -347,7 +347,7 @@ class Stabilisation(Term):
         if self.enabled and gone:
             explained = self._motion.prescribed(u)
             gone = [one for one in gone if self._motion.far(one, u, explained)]
-        gone = [one for one in gone if self._carries_nothing(one, u)]
+        gone = [g for g in gone if not g.carries(len(u), NOTHING * self._scale * g.size)]
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
 
     def flown_off(self, u: Floats) -> tuple[FreeBody, float] | None:
@@ -357,17 +357,6 @@ class Stabilisation(Term):
             u: Displacement of the local nodes, (nodes, 3), length.
         """
         return flown_off(self._loose, self._motion.begun, u)
-
-    def _carries_nothing(self, free: FreeBody, u: Floats) -> bool:
-        """Whether contact carries neither the loads on a body nor more than round-off."""
-        force = np.zeros_like(u)
-        for contact in free.contacts:
-            contact.add_force(force)
-        carried = np.sqrt(self._comm.allreduce(float((force[free.body.nodes] ** 2).sum())))
-        load = float(np.linalg.norm(free.force))
-        if load > 0.0 and carried > 0.5 * load:
-            return False
-        return bool(carried <= NOTHING * self._scale * free.size)
 
     @override
     def accept(self, u: Floats) -> float:
