@@ -169,7 +169,9 @@ def test_trace_writes_what_it_says(
 ) -> None:
     folder = tmp_path / "out"
     assert main(["trace", str(case), "-o", str(folder)]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == f"done      {folder}"
+    end, done = capsys.readouterr().out.splitlines()[-2:]
+    assert end == "end       position (0.001, 0, -0.0001), force (3, 0, -10)"
+    assert done == f"done      {folder}"
     assert {p.name for p in folder.iterdir()} == {"summary.json", "trace.csv", "case.toml"}
     summary = json.loads((folder / "summary.json").read_text())
     assert summary["status"] == "done" and summary["steps"] == 4

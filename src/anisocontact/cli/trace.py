@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 from anisocontact.base.figure_style import leave_out_descriptions
+from anisocontact.base.shown import shown
 from anisocontact.case.trace import Trace, load_trace
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import say
@@ -61,9 +62,9 @@ def _drive_into(folder: Path, trace: Trace) -> int:
     if message:
         say(f"error: {message}; what converged is in {folder}", sys.stderr)
         return STOPPED
-    x, f = (", ".join(f"{v:.6g}" for v in summary[key]) for key in ("reference", "force"))
+    x, f = (shown(summary[key], 6) for key in ("reference", "force"))
     say(f"steps     {summary['steps']}, {summary['newton_iterations']} iterations")
-    say(f"end       position ({x}), force ({f})")
+    say(f"end       position {x}, force {f}")
     say(f"done      {folder}")
     return DONE
 
