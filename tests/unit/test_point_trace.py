@@ -199,6 +199,17 @@ def test_bad_input_writes_nothing(
     assert main(["trace", str(tmp_path / "none.toml")]) == 2
 
 
+def test_what_a_load_cannot_do_on_its_way_is_told_by_its_place(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Requirement: the place in the file, as where values are wrong before anything moves."""
+    path = 'kind = "path"\npath = [[0, 0, 0], [1e-3, 0, 0]]'
+    push = 'kind = "push"\ndirection = [0, 0, 1]\ntravel = [0, 1e-3]\nstart = [0, 0, 0]'
+    case.write_text(CASE.replace(path, push))
+    assert main(["trace", str(case), "-o", str(tmp_path / "out")]) == 2
+    assert "error: load.direction: no tangential part" in capsys.readouterr().err
+
+
 def test_stopped_drive_keeps_what_converged(
     case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

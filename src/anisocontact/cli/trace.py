@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.figure_style import leave_out_descriptions
 from anisocontact.base.shown import shown
 from anisocontact.case.trace import Trace, load_trace
@@ -75,3 +76,7 @@ def _driven(interface: Interface, load: Load, group: Group) -> tuple[History, st
         return drive(interface, load, group), ""
     except StoppedError as stopped:
         return stopped.history, str(stopped)
+    except InputError as error:
+        if not hasattr(load, error.field):
+            raise
+        raise InputError(error.said, f"load.{error.field}") from None
