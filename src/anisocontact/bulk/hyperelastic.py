@@ -215,7 +215,8 @@ class UserEnergy(Hyperelastic):
     """A material by the user's own energy.
 
     Args:
-        energy: Takes the UFL deformation gradient, returns the energy per reference volume.
+        energy: Takes the UFL deformation gradient, returns the energy per reference volume; it
+            counts from what it is at F = I.
         young: Young's modulus at rest, the scale of the default penalty, stress.
         name: What the energy is called in messages.
 
@@ -232,6 +233,11 @@ class UserEnergy(Hyperelastic):
         check_function(energy, name, ())
         self._energy = energy
         self.young = _scale(young)
+
+    def energy(self, u: Any) -> list[Density]:
+        """The energy, less that at F = I: bodies that are not strained store none."""
+        ((stored, degree),) = super().energy(u)
+        return [(stored - self._energy(ufl.variable(ufl.Identity(3))), degree)]
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
         return [(self._energy(gradient), None)]

@@ -20,7 +20,7 @@ class Material(Protocol):
 
     Linear materials have `stress(u)`, the stress conjugate to `sym(grad(v))`. The others have
     `piola(u)`, the first Piola-Kirchhoff stress conjugate to `grad(v)`, and `energy(u)`, terms of
-    the energy per reference volume, or one of the two.
+    the energy per reference volume that are zero at rest, or one of the two.
 
     With `volume(u)`, a `Volume`, a material keeps the energy of its change of volume apart, so that
     cells do not lock: it is in `stress` and `piola`, and not in `parts` and `energy`.
