@@ -50,8 +50,6 @@ class NonlinearBulk:
         self.heated: dict[str, Heated] = _heated(materials, model)
         dx = body_measure(model)
         self._pressures = CellPressures(model, given, self._u, dx, self.heated)
-        #: As of `CellPressures`.
-        self.pressures = self._pressures.of
         self.histories = self._histories(model, given, full)
         self._warming = Warming(model, self.heated, self.histories, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
@@ -80,8 +78,16 @@ class NonlinearBulk:
         _check_stiff(model, materials, self.diagonal)
         #: The same for surfaces that give way by shear, as of `CellPressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
-        #: As of `CellPressures`.
-        self.hardness = self._pressures.hardness
+
+    @property
+    def pressures(self) -> Mapping[str, Any]:
+        """As of `CellPressures.of`."""
+        return self._pressures.of
+
+    @property
+    def hardness(self) -> float:
+        """As of `CellPressures`."""
+        return self._pressures.hardness
 
     def _histories(
         self, model: Model, given: Mapping[str, Any], degree: int

@@ -78,6 +78,14 @@ def _add_cases(commands: Commands) -> None:
         help="check all but the laws in Python, whose files are not run: for cases of others",
     )
 
+    _add_convert(commands)
+
+    report = _command(commands, "report", "draw the pictures and the report of a results folder")
+    report.add_argument("folder", metavar="DIR", help="results folder of `run`")
+
+
+def _add_convert(commands: Commands) -> None:
+    """What is made of meshes, decks and results for other codes."""
     convert = _command(
         commands,
         "convert",
@@ -94,9 +102,6 @@ def _add_cases(commands: Commands) -> None:
         help="file to write: .msh of gmsh, .vtu or .vtk; .vtkhdf of a results folder; .toml of a "
         "deck, which is a case file",
     )
-
-    report = _command(commands, "report", "draw the pictures and the report of a results folder")
-    report.add_argument("folder", metavar="DIR", help="results folder of `run`")
 
 
 def _add_points(commands: Commands) -> None:

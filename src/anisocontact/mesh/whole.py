@@ -16,15 +16,20 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, check_has_cells
+from anisocontact.mesh.elements import (
+    Elements,
+    Kind,
+    check_apart,
+    check_degenerate,
+    check_nodes,
+    check_single,
+    in_words,
+)
 from anisocontact.mesh.inside import told_inside
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, triangles
-
-#: A cell and how many nodes it has; nodes and body of each element.
-type Kind = tuple[str, int]
-type Elements = tuple[Ints, list[str]]
 
 #: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
 CORNERS = {
@@ -115,8 +120,8 @@ class WholeMesh:
         joined = self._by_kind(wanted)
         if not joined:
             raise InputError("no element is in a body")
-        _check_nodes(joined, self.points)
-        _check_single(joined)
+        check_nodes(joined, self.points)
+        check_single(joined)
         told = self._told_inside(joined)
         self.notes = (*self.notes, *told.values())
         wrong = 0
@@ -132,8 +137,8 @@ class WholeMesh:
             return left._cut(joined)._arrays(wanted)
         if cells == {"triangle", "quadrilateral"}:
             return in_triangles(left, joined).arrays(wanted)
-        self._check_apart(joined)
-        _check_degenerate(joined)
+        check_apart(joined)
+        check_degenerate(joined)
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
         return replace(mesh, notes=self.notes)
 
@@ -166,7 +171,7 @@ class WholeMesh:
             InputError: Some cells have middle nodes on their edges, others have none.
         """
         curved = [n > COUNT[cell] for cell, n in kinds]
-        said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
+        said = in_words(kinds)
         if any(curved) and not all(curved):
             raise InputError(f"{said}: cells of one order are needed")
         middles = None
@@ -186,18 +191,6 @@ class WholeMesh:
         count = sum(len(nodes) for _, nodes in cut.cells)
         cut.notes = (*self.notes, f"{said} are cut into {count} tetrahedra")
         return cut
-
-    @staticmethod
-    def _check_apart(kinds: Mapping[Kind, Elements]) -> None:
-        """Refuse kinds of elements that share nodes: no mesh has cells of both."""
-        said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
-        nodes = np.concatenate([np.unique(rows) for rows, _ in kinds.values()])
-        if len(np.unique(nodes)) < len(nodes) or len({cell for cell, _ in kinds}) > 1:
-            raise InputError(f"{said}: a mesh has cells of one kind")
-        names = [name for _, labels in kinds.values() for name in dict.fromkeys(labels)]
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError(f"body {name!r} has {said}, one kind is needed")
 
     def _of_kind(self, cell: str, nodes: Ints, labels: Sequence[str]) -> MeshArrays:
         """The arrays of elements of one kind with the body of each."""
@@ -237,37 +230,6 @@ class WholeMesh:
         return found
 
 
-def _check_nodes(kinds: Mapping[Kind, Elements], points: Floats) -> None:
-    """Refuse cells whose nodes are missing, or nowhere."""
-    used = np.unique(np.concatenate([nodes.ravel() for nodes, _ in kinds.values()]))
-    lost = used[(used < 0) | (used >= len(points))]
-    if len(lost):
-        raise InputError(f"a cell names node {lost[0]} counted from 0, there are {len(points)}")
-    endless = used[~np.isfinite(points[used]).all(axis=1)]
-    if len(endless):
-        place = ", ".join(f"{x:g}" for x in points[endless[0]])
-        raise InputError(
-            f"{len(endless)} nodes have coordinates that are not finite, such as ({place})"
-        )
-
-
-def _check_degenerate(kinds: Mapping[Kind, Elements]) -> None:
-    """Refuse cells that name a node twice."""
-    for (cell, _), (nodes, _) in kinds.items():
-        twice = int((np.diff(np.sort(nodes, axis=1), axis=1) == 0).any(axis=1).sum())
-        if twice:
-            text = f"{twice} of {len(nodes)} {cell}s name a node twice"
-            raise InputError(f"{text}; degenerate cells have to be wedges, pyramids, tetrahedra")
-
-
-def _check_single(kinds: Mapping[Kind, Elements]) -> None:
-    """Refuse two cells of the same nodes, whose faces would lie inside."""
-    for (cell, _), (nodes, _) in kinds.items():
-        again = len(nodes) - len(np.unique(np.sort(nodes, axis=1), axis=0))
-        if again:
-            raise InputError(f"{again} of {len(nodes)} {cell}s have the nodes of another one")
-
-
 def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
     """A mesh in the plane whose quadrilaterals are cut at the shorter diagonal.
 
@@ -278,7 +240,7 @@ def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
     Raises:
         InputError: Some cells have middle nodes on their edges, others have none, or all have.
     """
-    said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
+    said = in_words(kinds)
     if any(n > 4 or (cell == "triangle" and n > 3) for cell, n in kinds):
         raise InputError(f"{said}: a mesh in the plane of order 2 needs cells of one kind")
     cut = WholeMesh(mesh.points, node_sets=mesh.node_sets, surfaces=mesh.surfaces)

@@ -205,18 +205,7 @@ def at_end(
     """
     found = []
     for contact, entry in zip(contacts, shown, strict=True):
-        soft, exact = [], _exact(contact) and not relaxed
-        if not (exact or contact.physical_penalty):
-            soft.append(("penetration", "worst_penetration", NORMAL))
-        if not (exact or contact.physical_adhesion):
-            soft.append(("elastic slip", "worst_elastic_slip", "a larger stiffness of adhesion"))
-        for name, key, cure in soft:
-            share = entry[key] / entry["facet_size"]
-            if share > DEEP:
-                found.append(
-                    f"{_pair(entry)}: the {name} was up to {share:.0%} of the facet size, at time "
-                    f"{entry[f'{key}_time']:.4g}; {_cure(contact, cure)}"
-                )
+        found += _too_soft(contact, entry, _exact(contact) and not relaxed)
         if entry["worst_turn"] > TURNED:
             found.append(
                 f"{_pair(entry)}: normal, axes of adhesion or slave turned by "
@@ -238,6 +227,30 @@ def at_end(
             all_of_it = f"more than all ({taken:.3g} against {work:.3g})"
             share = f"{taken / work:.0%}" if taken <= work else all_of_it
             found.append(text.format(share))
+    return found
+
+
+def _too_soft(contact: Contact, entry: dict[str, Any], exact: bool) -> list[str]:
+    """What is said of penetration and elastic slip that penalties left.
+
+    Args:
+        contact: A contact.
+        entry: Its entry in the summary.
+        exact: Whether multipliers held in all of the run.
+    """
+    soft = []
+    if not (exact or contact.physical_penalty):
+        soft.append(("penetration", "worst_penetration", NORMAL))
+    if not (exact or contact.physical_adhesion):
+        soft.append(("elastic slip", "worst_elastic_slip", "a larger stiffness of adhesion"))
+    found = []
+    for name, key, cure in soft:
+        share = entry[key] / entry["facet_size"]
+        if share > DEEP:
+            found.append(
+                f"{_pair(entry)}: the {name} was up to {share:.0%} of the facet size, at time "
+                f"{entry[f'{key}_time']:.4g}; {_cure(contact, cure)}"
+            )
     return found
 
 

@@ -105,8 +105,7 @@ def make_parts(
         InputError: A body without material, a material without body, two contacts of one name,
             one on another model, or a slave or master in a plane of symmetry.
     """
-    _check(model, materials, contacts)
-    _check_planes(contacts, connections.symmetry)
+    _check(model, materials, contacts, connections.symmetry)
     specs = connections.attached
     faces = CoupledFaces(connections.coupled, model, materials, middle_nodes(model))
     bulk = _bulk(model, materials, faces)
@@ -116,9 +115,8 @@ def make_parts(
     like = layout.new_vector()
     tied = _tied(model, like, contacts, connections)
     guides = _guides(model, connections.symmetry, like, tied, faces)
-    constraints = Constraints(
-        like, constrain_middles(model, like, faces.whole), tied, guides, faces
-    )
+    middles = constrain_middles(model, like, faces.whole)
+    constraints = Constraints(like, middles, tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
@@ -220,6 +218,7 @@ def _check(
     model: Model,
     materials: Mapping[str, Material],
     contacts: Sequence[Contact],
+    symmetry: Sequence[str],
 ) -> None:
     for body in materials:
         model.cells(body, f"material.{body}")
@@ -240,3 +239,4 @@ def _check(
             )
     for name, material in materials.items():
         model.idealisation.check_material(without_expansion(material), f"material.{name}")
+    _check_planes(contacts, symmetry)
