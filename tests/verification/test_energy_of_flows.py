@@ -143,3 +143,21 @@ def test_both_accounts_of_work_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     taken_up = _jump(jumping(False, False, False), False).energies
     assert asked["residual"] != taken_up["residual"]
     assert taken_up["external"] == pytest.approx(asked["external"], rel=0.01)
+
+
+def test_what_small_strains_leave_open_is_told() -> None:
+    """A viscoelastic block strained by 1e-3 and by 1e-8 in one increment, in which it relaxes.
+
+    Requirement: the same share of the work is open, and is told. Source: the material is linear.
+    Tolerance: rounding. With what rounds energies of F = I + grad(u), of bodies at finite strain,
+    nothing was told of the second one, nor of a ball that dents a block by 1e-3 of its contact.
+    """
+    shares = []
+    for stretch in (1e-3, 1e-8):
+        model = build_mesh([Body("block", BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2)))])
+        material = make_material("viscoelastic", E=1e3, nu=0.3, g=[0.8], tau=[0.3], k=[0.8])
+        held = {"block.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}, "block.top": {"z": stretch}}
+        (accepted,) = Solver(Problem(model, {"block": material}, []), [Step("up", 1, held)]).run()
+        shares.append(accepted.imbalance.share)
+    assert shares[0] > 0.05
+    assert shares[1] == pytest.approx(shares[0], rel=1e-6)

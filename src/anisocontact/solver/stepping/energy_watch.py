@@ -13,6 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.bulk import small_strain
 from anisocontact.contact import initial_overlap
 from anisocontact.interface import STATUS
 from anisocontact.solver.system.contact_work import BELIEVED
@@ -181,11 +182,13 @@ class EnergyWatch:
         nodes moved alone by that, `K_ii x_i`, and of `Term.lever`; these do work on displacements,
         or where nothing has moved on what positions are off by themselves. At finite strain
         energies of F = I + grad(u) are rounded too, so that what has hardly moved counts by the
-        size of its cells.
+        size of its cells; those of small strains are not.
         """
         bulk, assembly = self._problem.bulk, self._problem.assembly
         diagonal, extent = bulk.diagonal.array_r, assembly.layout.unknowns.extent
-        moved = np.abs(self._problem.accepted().array_r[: len(diagonal)]) + bulk.rest_length
+        moved = np.abs(self._problem.accepted().array_r[: len(diagonal)])
+        if not all(map(small_strain, self._problem.materials.values())):
+            moved += bulk.rest_length
         moved += _ROUND_OFF * extent
         forces = float(diagonal @ ((extent + moved) * moved))
         held = assembly.terms.lever() * float(np.linalg.norm(moved))
