@@ -223,7 +223,7 @@ def test_example_mesh_is_what_its_script_says():
     ("rename", "words"),
     [
         ({"block": ""}, "no named volume group"),
-        ({"block": "a.b"}, "volume group 'a.b': the name of a body has no dot"),
+        ({"block": "a.b"}, "volume group 'a.b': the name of a body has no dot; give it"),
     ],
 )
 def test_groups_that_make_no_body(gmsh, tmp_path, rename, words):
@@ -285,6 +285,16 @@ def test_triangles_on_hexahedra(tmp_path):
         "$Elements\n2\n1 2 2 1 1 1 2 3\n2 5 2 2 2 1 2 3 4 5 6 7 8\n$EndElements\n"
     )
     with pytest.raises(InputError, match=r"'a.low': 1 of 1 facets belong to no cell of a body"):
+        read_gmsh(path)
+
+
+def test_names_in_another_encoding(gmsh, tmp_path):
+    """Requirement: names of groups that are no UTF-8, as Latin-1 is, are told as that."""
+    from anisocontact.mesh import read_gmsh
+
+    path = written(gmsh, tmp_path / "a.msh", rename={"block": "größe"})
+    path.write_bytes(path.read_text("utf-8").encode("latin-1"))
+    with pytest.raises(InputError, match=r"a name in \$PhysicalNames is not in UTF-8"):
         read_gmsh(path)
 
 

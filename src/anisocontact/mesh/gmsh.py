@@ -228,7 +228,8 @@ def _volumes(
     known = list(dict.fromkeys(name for name, _ in named))
     for name in known:
         if "." in name:
-            raise InputError(f"{_GROUPS[dim]} group {name!r}: the name of a body has no dot")
+            text = "the name of a body has no dot; give it another name in the file"
+            raise InputError(f"{_GROUPS[dim]} group {name!r}: {text}")
     for name in bodies or ():
         if name not in known:
             raise InputError(f"no volume group {name!r}; {hint(name, known)}")

@@ -177,6 +177,8 @@ def _physical_names(stream: Stream) -> dict[Entity, str]:
         for _ in range(stream.count()):
             dim, tag, name = stream.line().split(maxsplit=2)
             names[int(dim), int(tag)] = name.decode("utf-8").strip('"')
+    except UnicodeDecodeError:
+        raise MshError("a name in $PhysicalNames is not in UTF-8: save the file so") from None
     except ValueError:
         raise MshError("section $PhysicalNames is damaged") from None
     stream.skip(b"PhysicalNames")

@@ -9,6 +9,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import curved_gradients, middle_nodes
+from anisocontact.base.shown import shown
 from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
@@ -54,14 +55,18 @@ def check_cells(mesh: MeshArrays) -> None:
     if out_of_range(extent):
         raise InputError(f"nodes are up to {extent:g} from the origin, must be {RANGE}")
     # Sizes whose volumes overflow or underflow count as flat.
+    placed = mesh.with_points()
     with np.errstate(all="ignore"):
-        least, most, shaped = _sizes(mesh.with_points())
+        least, most, shaped = _sizes(placed)
     for name, cells in mesh.bodies.items():
         largest = np.max(mesh.comm.allgather(most[cells].max(initial=0.0)))
         sound = (least[cells] > FLAT * largest) & (shaped[cells] > NEEDLE)
         bad, count = mesh.sum(len(cells) - int(sound.sum())), mesh.sum(len(cells))
         if bad:
-            raise InputError(f"body {name!r}: {bad} of {count} cells are flat or inverted")
+            own = placed.points[placed.cells[cells[~sound][:1]]].mean(axis=1)
+            first = shown(np.concatenate(mesh.comm.allgather(own))[0], size=extent)
+            text = f"{bad} of {count} cells are flat or inverted, the first at {first}"
+            raise InputError(f"body {name!r}: {text}")
     shared = _facets_of_more_than_two(mesh)
     if shared:
         raise InputError(f"{shared} facets belong to more than two cells")
