@@ -127,11 +127,17 @@ def test_same_answer_in_any_units() -> None:
     np.testing.assert_allclose(scaled, 1e9 * force, atol=1e2)
 
 
-def test_block_falls_on_a_body() -> None:
-    """The same on a meshed body: it meets the facets and sticks."""
+@pytest.mark.parametrize(
+    ("gap", "strategy", "taken"),
+    [(0.3, "auto", "direct"), (2.0, "auto", "direct"), (2.0, "condensed", "condensed")],
+)
+def test_block_falls_on_a_body(gap: float, strategy: str, taken: str) -> None:
+    """The same on a meshed body: it meets the facets and sticks, also from so far away that no
+    facet is in reach of it at the start. `auto` does not condense a linear body that does not touch
+    what is to hold it, and who asks for that keeps the nodes with springs."""
     model = build_box(
         {
-            "block": BoxSpec((0, 0, 0.3), (1, 1, 0.5), (3, 3, 2)),
+            "block": BoxSpec((0, 0, gap), (1, 1, 0.5), (3, 3, 2)),
             "base": BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (5, 5, 1)),
         }
     )
@@ -146,7 +152,9 @@ def test_block_falls_on_a_body() -> None:
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
     step = Step("press", 1, CLAMP, {"block.top": {"z": -10.0}})
-    for _ in Solver(problem, [step]).run():
+    solver = Solver(problem, [step], strategy=strategy)
+    assert solver.choice.name == taken
+    for _ in solver.run():
         pass
     np.testing.assert_allclose(contact.resultant()[0], [0.0, 0.0, 10.0], atol=1e-5)
     assert problem.stabilisation.notes[0].startswith("body 'block' is free to move: translation")

@@ -43,6 +43,7 @@ class FreeBody:
             body without, of which no face follows a reference point either.
         least: Stiffness that counts as none, force/length.
         nodes: Nodes of this rank that stabilisation acts on, see `act_on`.
+        touchable: Those that it may act on.
         sides: Of each of its contacts 1 where it is the slave, -1 where it is the master, 0 where
             it is both.
         stiffness: Of stabilisation at each of them, force/length.
@@ -61,7 +62,7 @@ class FreeBody:
     least: float
     nodes: Ints = field(init=False)
     sides: list[float] = field(init=False)
-    _touchable: Ints = field(init=False)
+    touchable: Ints = field(init=False)
     stiffness: float = 0.0
     force: Floats = field(default_factory=lambda: np.zeros(3))
     pushed: Floats = field(default_factory=lambda: np.zeros(0))
@@ -73,7 +74,7 @@ class FreeBody:
         slave = np.unique(np.concatenate(own))
         if not self.contacts[0].space.mesh.comm.allreduce(len(slave)):
             own = [self._within(contact.nodes_of_groups[1:]) for contact in self.contacts]
-        self._touchable = np.unique(np.concatenate(own))
+        self.touchable = np.unique(np.concatenate(own))
         (of,) = sides_of([self.body], self.contacts)
         self.sides = [float(one[0]) - float(any(one[1:])) for one in of]
         self.act_on(None)
@@ -101,7 +102,7 @@ class FreeBody:
         That is on its slave nodes, or on those of masters where it has none: a body so comes to
         rest on the same way whichever unknowns a strategy keeps.
         """
-        self.nodes = self._touchable
+        self.nodes = self.touchable
         if where is not None:  # on one process
             self.nodes = self.nodes[where[self.nodes]]
 

@@ -308,7 +308,7 @@ class Condensed:
         if self._system is not None:
             self._system.solver.forget()
         u = self._nodal()
-        self._reach.select(u)
+        self._reach.select(u, [free.touchable for free in self._problem.stabilisation.loose])
         system = self._eliminate(u)
         # in terms of the new unknowns: forces on what is no longer prescribed become loads
         outside = self._problem.outside

@@ -49,13 +49,21 @@ class Reach:
         self._factor = 1.0
         self.nodes: Flags = np.zeros(len(self._start), dtype=np.bool_)
 
-    def select(self, u: Floats) -> None:
-        """Take the nodes in reach of a state of local nodes, (nodes, 3), length; collective."""
+    def select(self, u: Floats, alone: Sequence[Ints] = ()) -> None:
+        """Take the nodes in reach of a state; collective.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            alone: Nodes of each body that contact alone can hold, on which springs may act until it
+                does; all of them are taken where the body is so far away that none is in reach.
+        """
         self._start = u.copy()
         named = [self._others]
         for contact in self._contacts:
             named += self._of(contact, u) if contact.of_two_groups else [contact.couplable()]
         self.nodes = marked_nodes(self._space, np.concatenate([one.ravel() for one in named]))
+        for nodes in alone:
+            self.nodes[nodes] |= not self.nodes[nodes].any()
 
     def has(self, named: Locals) -> bool:
         """Whether all nodes that any process names are in reach; see `all_marked`."""

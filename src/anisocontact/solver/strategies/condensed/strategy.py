@@ -224,5 +224,7 @@ def _blocks(contact: Contact) -> float:
 
 def _touches(problem: Problem) -> bool:
     """Whether a contact is closed where the bodies are, or next to it."""
-    least = (c.state["gap"].min(initial=np.inf) / c.facet_size for c in problem.contacts)
-    return any(gap <= CLOSED for gap in least)
+    return any(
+        (c.state["gap"][c.master.located(c.state)] <= CLOSED * c.facet_size).any()
+        for c in problem.contacts
+    )
