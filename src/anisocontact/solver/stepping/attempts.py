@@ -34,6 +34,9 @@ from anisocontact.solver.system.problem import Problem
 
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0
+#: Parts in a row, each smaller than the one before, whose loads throw bodies farther than all is
+#: long: beyond that no smaller load is held either.
+FLOWN = 3
 #: Kinds of culprits, the gravest first.
 GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
 #: Kinds that explain a failure by themselves; cells that are inverted do in an equilibrium that is
@@ -148,6 +151,7 @@ class Attempts:
         self._watch = watch
         self._share = 1.0
         self._final = False
+        self._flown = 0
         self._failed: FailedPoint | None = None
         self._ahead: Vec | None = None
         self._continuation = Continuation(problem, newton)
@@ -175,7 +179,7 @@ class Attempts:
         Returns:
             What converged, or why nothing did, and where.
         """
-        spent, self._failed, self._ahead, failed = 0, None, None, ""
+        spent, self._failed, self._ahead, failed, far = 0, None, None, "", False
         overloaded, hopeless = bool(overloads), any(one.certain for one in overloads)
         found: list[Culprit] = []
         seen: set[str] = set()
@@ -184,6 +188,7 @@ class Attempts:
             result, culprits = self._attempt(way)
             spent += result.iterations
             if not result.reason:
+                self._flown = 0
                 result = replace(result, iterations=spent)
                 relaxed = way.multipliers == PENALTIES
                 return Outcome(result, relaxed=relaxed, way=way.way)
@@ -193,6 +198,7 @@ class Attempts:
             # where bodies that flow find nothing that is not what was in the way
             if not way.flowing or result.culprits:
                 failed, found = result.reason, _graver(found, culprits)
+            far |= result.far > 0.0
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
             if way is ways[-1] and not self._final and (alternates or control.tiny or overloaded):
@@ -200,7 +206,8 @@ class Attempts:
         reason = _reason(failed, found, self._problem.contacts)
         result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()
-        final, failed_at = self._final or hopeless, self._failed
+        self._flown = self._flown + 1 if far else 0
+        final, failed_at = self._final or hopeless or self._flown > FLOWN, self._failed
         return Outcome(result, tuple(found), final, hint, failed_at, refused=self._final)
 
     def _planned(

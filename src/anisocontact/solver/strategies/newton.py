@@ -55,6 +55,8 @@ class NewtonResult:
             the last multipliers.
         reason: Empty if it converged, else why it did not.
         culprits: Places that ended it, where they are known.
+        far: How far bodies went where what is left may be rounding as they went farther than all
+            is long, length; else 0.
         unstable: Whether the last tangent that was factorised has a negative eigenvalue, as far as
             `unstable` finds one: the state found is not stable.
     """
@@ -63,6 +65,7 @@ class NewtonResult:
     residuals: list[float]
     reason: str
     culprits: tuple[Culprit, ...] = ()
+    far: float = 0.0
     unstable: bool = False
 
 
@@ -223,7 +226,11 @@ class Newton:
             check_memory(ksp.getPC())
             ksp.reset()
             ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
-        return NewtonResult(self.snes.getIterationNumber(), self._iteration.residuals, text)
+        balance = self._problem.balance
+        lost = bool(text) and balance.in_rounding(self.snes.getFunctionNorm())
+        known = self._iteration.residuals
+        far = balance.far if lost else 0.0
+        return NewtonResult(self.snes.getIterationNumber(), known, text, far=far)
 
     def _explain(self, reason: int) -> str:
         reasons = PETSc.SNES.ConvergedReason

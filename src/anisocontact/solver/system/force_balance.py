@@ -99,13 +99,21 @@ class ForceBalance:
         """No forces at all."""
         return cls(np.zeros(owned), 0.0, 0.0, 0.0, np.zeros(owned), np.zeros(owned))
 
+    def in_rounding(self, norm: float) -> bool:
+        """Whether a residual may be rounding, where loads are too small for it.
+
+        Args:
+            norm: Of the residual, force.
+        """
+        return norm <= self.rounded and self.rounded > self.round_off
+
     def explained(self, norm: float) -> str:
         """What a residual may come from where loads are too small for it; empty if not that.
 
         Args:
             norm: Of the residual, force.
         """
-        if not norm <= self.rounded or self.rounded <= self.round_off:
+        if not self.in_rounding(norm):
             return ""
         if self.far:
             return (
