@@ -105,7 +105,9 @@ def test_fast_forms_are_those_of_the_default_arguments_and_keep_what_is_no_numbe
     assert np.isnan(plain).any() and np.array_equal(np.isnan(fast), np.isnan(plain))
 
 
-@pytest.mark.parametrize("name", ["neo-hookean", "neo-hookean-incompressible", "plastic"])
+@pytest.mark.parametrize(
+    "name", ["neo-hookean", "neo-hookean-incompressible", "plastic", "an energy"]
+)
 def test_a_form_keeps_its_name_whatever_was_made_before(monkeypatch, name):
     """All that one more body needs was compiled for the one before, which is the same.
 
@@ -114,7 +116,8 @@ def test_a_form_keeps_its_name_whatever_was_made_before(monkeypatch, name):
     """
     import ffcx.naming
 
-    from anisocontact.bulk import make_material
+    from anisocontact.base.fenicsx import ufl
+    from anisocontact.bulk import UserEnergy, make_material
     from anisocontact.mesh import BoxSpec, build_box
     from anisocontact.results.paraview import BodyGrid
     from anisocontact.solver import Problem
@@ -131,7 +134,10 @@ def test_a_form_keeps_its_name_whatever_was_made_before(monkeypatch, name):
         names.clear()
         model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
         more = {"yield_stress": 1.0} if name == "plastic" else {}
-        law = make_material(name, E=1.0, nu=0.3, **more)
+        if name == "an energy":
+            law = UserEnergy(lambda f: 0.5 * ufl.inner(f, f) - ufl.ln(ufl.det(f)), young=2.0)
+        else:
+            law = make_material(name, E=1.0, nu=0.3, **more)
         BodyGrid(Problem(model, {"bar": law}))
         return set(names)
 

@@ -15,7 +15,13 @@ from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
 from anisocontact.bulk.user_function import check_function
-from anisocontact.bulk.volume import Volume, derivative_at, volume_of, volume_ratio
+from anisocontact.bulk.volume import (
+    Volume,
+    derivative_at,
+    volume_of,
+    volume_ratio,
+    without_variables,
+)
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
@@ -237,7 +243,8 @@ class UserEnergy(Hyperelastic):
     def energy(self, u: Any) -> list[Density]:
         """The energy, less that at F = I: bodies that are not strained store none."""
         ((stored, degree),) = super().energy(u)
-        return [(stored - self._energy(ufl.variable(ufl.Identity(3))), degree)]
+        at_rest = without_variables(ufl.as_ufl(self._energy(ufl.variable(ufl.Identity(3)))))
+        return [(stored - at_rest, degree)]
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
         return [(self._energy(gradient), None)]

@@ -46,8 +46,7 @@ class Volume:
 def derivative_at(function: Callable[[Any], Any], gradient: Any) -> Any:
     """Derivative of a number by a tensor, UFL.
 
-    UFL numbers variables, and these numbers are in the name under which a compiled form is kept: it
-    would be compiled anew in every run. So the derivative is taken here, and has no variable.
+    It is taken here, and has no variable, see `without_variables`.
 
     Args:
         function: Takes the tensor to the number.
@@ -58,10 +57,24 @@ def derivative_at(function: Callable[[Any], Any], gradient: Any) -> Any:
         (3, 3)
     """
     variable = ufl.variable(gradient)
+    return without_variables(ufl.diff(function(variable), variable))
+
+
+def without_variables(expression: Any) -> Any:
+    """An expression of UFL without its variables, whose derivatives by them are taken.
+
+    UFL numbers variables, and these numbers are in the name under which a compiled form is kept: it
+    would be compiled anew in every run.
+
+    Args:
+        expression: The expression, UFL.
+
+    Example:
+        >>> without_variables(ufl.variable(ufl.Identity(3))).ufl_shape
+        (3, 3)
+    """
     ways: Any = ufl.algorithms
-    found = ways.apply_algebra_lowering.apply_algebra_lowering(
-        ufl.diff(function(variable), variable)
-    )
+    found = ways.apply_algebra_lowering.apply_algebra_lowering(expression)
     return ways.strip_variables(ways.apply_derivatives.apply_derivatives(found))
 
 
