@@ -279,3 +279,34 @@ def test_what_friction_has_dissipated_stays_where_nodes_are_left_behind() -> Non
         assert min(after["friction"] - one["friction"] for one, after in pairwise(found)) >= 0.0
         left.append(abs(found[-1]["residual"]) / found[-1]["external"])
     assert max(left) < 0.002
+
+
+@pytest.mark.parametrize("ideal", [PlaneStrain(), PlaneStress()], ids=["strain", "stress"])
+@pytest.mark.parametrize("multipliers", [False, True])
+@pytest.mark.parametrize("order", [1, 2])
+def test_friction_across_the_plane(ideal: Idealisation, multipliers: bool, order: int) -> None:
+    """A block dragged over another along marks at 35 degrees, both held in the plane.
+
+    Requirement: where all slides along x the force across the plane is that of the law, though
+    what holds the plane carries it. Source: `T = -N F^-1 v / sqrt(v F^-1 v)`, F^-1 of the squares
+    of the coefficients. Tolerance: 0.3 %, measured 0.2, as facets tilt at the edge; it was 0.
+    """
+    first, second, angle = 0.5, 0.2, np.radians(35.0)
+    marks = make_directions("constant", vector=(1, 0, 0), angle_deg=35)
+    friction: Any = Friction(coefficients=(first, second), directions=marks)
+    if not multipliers:
+        sticks = Adhesion(stiffness=(1e5, 1e5), directions=marks)
+        friction = ContactLaw(NormalLaw(penalty=1e5), sticks, friction)
+    model = _stacked(ideal, order)
+    contact = Contact(model, "b.bottom", "a.top", friction, mortar=True)
+    problem = Problem(model, {"a": STEEL, "b": STEEL}, [contact])
+    press = {"a.bottom": {"x": 0.0, "y": 0.0}, "b.top": {"x": 0.0, "y": -0.002}}
+    _run(problem, Step("press", 1, press), Step("drag", 4, {"b.top": {"x": 0.4}}))
+    assert contact.counts()["stick"] == 0
+    force, _ = contact.resultant()
+    cos, sin = np.cos(angle), np.sin(angle)
+    along = (first * cos) ** 2 + (second * sin) ** 2
+    across = (first**2 - second**2) * cos * sin
+    # the plane is seen from +y: z is to its right
+    assert abs(force[2] / force[0]) == pytest.approx(across / along, rel=3e-3)
+    assert abs(force[0] / force[1]) == pytest.approx(np.sqrt(along), rel=5e-3)

@@ -65,6 +65,9 @@ def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) 
         parts.assembly.constraints.ties.sectors.hold_cuts(fixed)
     fixed = with_ghosts(parts.model.space, fixed)
     still = [*parts.supports.resting(), *parts.guides.resting()]
+    if parts.model.idealisation.dim == 2:
+        # what holds a plane is no mirror: friction across it is what axes at an angle make of slip
+        still = [(nodes, direction) for nodes, direction in still if not direction[2]]
     there = np.zeros((count, len(still)), dtype=bool)
     for i, (nodes, _) in enumerate(still):
         there[nodes, i] = True
