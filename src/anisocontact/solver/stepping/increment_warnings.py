@@ -106,6 +106,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for name, count in accepted.undetermined.items():
         points = "slave point touches" if count == 1 else "slave points touch"
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
+    for name, stride in accepted.rolled.items():
+        yield f"rolled {name}", f"contact {name!r}: {stride}"
     for name, count in accepted.slivers.items():
         nodes = "slave node touches" if count == 1 else "slave nodes touch"
         yield f"slivers {name}", f"contact {name!r}: {count} {nodes} {SLIVERS}"

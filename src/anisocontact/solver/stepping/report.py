@@ -11,6 +11,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import by_place
 from anisocontact.base.shown import shown
 from anisocontact.interface.failed_point import FailedPoint
+from anisocontact.solver.stepping.rolling_watch import Stride
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.rotations import BodyRotation
@@ -71,6 +72,8 @@ class Accepted:
         relaxed: Whether penalties hold in it, as no multipliers were found.
         slivers: Slave nodes that touch on less than 5 % of their weight where penalties hold, by
             name of the contact; contacts without any are left out.
+        rolled: How far rigid bodies that are free to turn have rolled in it, where that is past
+            several slave nodes, by name of the contact.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -108,6 +111,7 @@ class Accepted:
     past_cuts: dict[str, float] = field(default_factory=dict)
     relaxed: bool = False
     slivers: dict[str, int] = field(default_factory=dict)
+    rolled: dict[str, Stride] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""
     missed: str = ""

@@ -30,6 +30,7 @@ from anisocontact.solver.stepping.overload import (
 from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
+from anisocontact.solver.stepping.rolling_watch import RollingWatch
 from anisocontact.solver.stepping.run_position import RunPosition, fraction
 from anisocontact.solver.stepping.same_problem import (
     as_array,
@@ -117,7 +118,7 @@ class Solver(Uncopied):
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
-        self._cut_faces = CutFaceWatch(problem)
+        self._cut_faces, self._rolling = CutFaceWatch(problem), RollingWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
         self._failures = Failures(problem, self.doubtful)
@@ -392,6 +393,7 @@ class Solver(Uncopied):
             past_cuts=self._cut_faces.lost(),
             relaxed=outcome.relaxed,
             slivers={name: n for name, n in slivers.items() if n},
+            rolled=self._rolling.strides(),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
