@@ -19,6 +19,8 @@ from anisocontact.solver.system.problem import Problem
 #: Way of an increment over the distance of nodes from which on several come one after the other:
 #: a node an increment is a way of one, but for rounding and what the body is deformed.
 SEVERAL = 1.3
+#: Points of a process, about, whose distance from the next one is measured.
+ASKED = 16
 
 
 @dataclass(frozen=True)
@@ -104,14 +106,19 @@ class RollingWatch:
 
 
 def _spacings(points: Floats, came: Flags, along: Floats) -> Floats:
-    """Distance of points to the next one ahead along a direction, length; of those that have one.
+    """Distance of points to the next one ahead along a direction, length.
 
     Args:
         points: Where points are, (n, 3), length.
-        came: Those that are asked for, (n,).
+        came: Of which of them, (n,).
         along: The direction, (3,).
+
+    Returns:
+        Of some of them, but those that have none ahead.
     """
-    arms = points[None] - points[came][:, None]
+    rows = np.flatnonzero(came)
+    some = points[rows[:: max(1, len(rows) // ASKED)]]
+    arms = points[None] - some[:, None]
     ahead = arms @ along
     beside = np.linalg.norm(arms - ahead[..., None] * along, axis=-1)
     ahead[beside >= ahead] = np.inf
