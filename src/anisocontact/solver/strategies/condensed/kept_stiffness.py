@@ -42,10 +42,10 @@ class KeptStiffness:
         """
         bodies = self._problem.assembly.bodies
         bodies.again = lasting and self._known and self._lasts()
-        self._known = True
         self.made += not bodies.again
         try:
             yield
+            self._known = True  # one that could not be made is none to keep
         finally:
             bodies.again = False
 
