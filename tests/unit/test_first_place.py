@@ -34,7 +34,7 @@ def test_is_the_same_on_any_number_of_processes(ranks):
         points = POINTS[ranks[rank]]
         contact = SimpleNamespace(
             points=points,
-            slave_points=SimpleNamespace(outward=points + 1),
+            slave_points=SimpleNamespace(outward=points + 1, size=1.0),
             space=SimpleNamespace(mesh=SimpleNamespace(comm=comm)),
         )
         bad = np.asarray(ranks[rank], dtype=int) < 3

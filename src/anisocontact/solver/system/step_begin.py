@@ -65,12 +65,14 @@ def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) 
         parts.assembly.constraints.ties.sectors.hold_cuts(fixed)
     fixed = with_ghosts(parts.model.space, fixed)
     still = [*parts.supports.resting(), *parts.guides.resting()]
-    if parts.model.idealisation.dim == 2:
-        # what holds a plane is no mirror: friction across it is what axes at an angle make of slip
-        still = [(nodes, direction) for nodes, direction in still if not direction[2]]
     there = np.zeros((count, len(still)), dtype=bool)
     for i, (nodes, _) in enumerate(still):
         there[nodes, i] = True
+    if parts.model.idealisation.dim == 2:
+        # what holds a plane is no mirror: friction across it is what axes at an angle make of slip,
+        # but where nothing slides in the plane either
+        across = np.array([bool(direction[2]) for _, direction in still], dtype=bool)
+        there[:, across] &= there[:, ~across].any(axis=1, keepdims=True)
     there = with_ghosts(parts.model.space, there)
     resting = [(there[:, i], direction) for i, (_, direction) in enumerate(still)]
     for contact in parts.contacts:
