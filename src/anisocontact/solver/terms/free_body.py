@@ -114,6 +114,23 @@ class FreeBody:
         """Whether a contact is one of its own."""
         return any(contact is one for one in self.contacts)
 
+    def apart(self) -> str:
+        """How far it is from what it may touch in the accepted state, in words; collective.
+
+        Nothing where it touches, or where no point of it or of its slaves has a master to meet.
+        """
+        gaps = []
+        for contact in self.contacts:
+            gap = contact.last.gap[contact.master.located(contact.last.state)]
+            least = contact.space.mesh.comm.allgather(float(gap.min(initial=np.inf)))
+            gaps.append(min(least))
+        nearest = min(gaps)
+        if not 0.0 < nearest < np.inf:
+            return ""
+        return (
+            f"; it is {nearest:.3g} from what it may touch, bring it there by a displacement first"
+        )
+
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
 

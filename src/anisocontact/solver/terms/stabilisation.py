@@ -258,9 +258,8 @@ class Stabilisation(Term):
         self._count += 1
         if self._count > MOST or self.flown_off(u) is not None:
             lost = [free for free in self._free if not free.touched()] or self._free
-            raise NotHeldError(
-                "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
-            )
+            lines = [f"nothing holds body {f.body.name!r}: {f.modes}{f.apart()}" for f in lost]
+            raise NotHeldError("; ".join(lines))
         self._anchor = u.copy()
         for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
