@@ -32,9 +32,9 @@ class AtPoints:
         variables: Internal variables by name, DOLFINx functions.
         stored: Energy per reference volume that the accepted state has stored, a function.
         dissipated: What has been dissipated until then, per volume of the reference.
-        warming: What a stretch by temperature gives to the accepted state, energy per volume
-            without stress, where the body expands; see `Warming`.
-        warmth: The same of the state that `take_warmth` was asked for.
+        thermal_force: Force conjugate to a stretch by temperature in the accepted state, energy per
+            volume without stress, where the body expands; see `Heated.thermal_force`.
+        chosen_thermal_force: The same of the state that `choose_thermal_force` was asked for.
     """
 
     linear = False
@@ -51,7 +51,6 @@ class AtPoints:
     ) -> None:
         self._mesh = model.mesh
         self._cells = np.sort(model.cells(body))
-        self._heated = heated
         self._ideal = heated or model.idealisation
         owned = model.mesh.topology.index_map(model.idealisation.dim).size_local
         self._owned = int(np.searchsorted(self._cells, owned))
@@ -61,8 +60,8 @@ class AtPoints:
         self.variables = {name: self._zero(shape) for name, shape in history.items()}
         self._stress = self._zero((3, 3))
         self.stored, self.dissipated = self._zero(()), self._zero(())
-        self.warming: Any = self._zero(()) if heated else None
-        self.warmth: Any = self._zero(()) if heated else None
+        self.thermal_force: Any = self._zero(()) if heated else None
+        self.chosen_thermal_force: Any = self._zero(()) if heated else None
         places = self._at_points(ufl.SpatialCoordinate(self._mesh))
         self.places: Floats = places.eval(self._mesh, self._cells).reshape(-1, 3)
 
@@ -79,16 +78,16 @@ class AtPoints:
         """True stress at the points, of the displacement now."""
         raise NotImplementedError
 
-    def take_warmth(self, trial: bool) -> None:
-        """Let `warmth` be what a stretch by temperature gives, where the body expands.
+    def choose_thermal_force(self, trial: bool) -> None:
+        """Bring `chosen_thermal_force` to a state, of a body that expands.
 
         Args:
-            trial: Whether to the last trial; else to the last accepted increment.
+            trial: Whether that is the last trial; else it is the last accepted increment.
         """
-        given = self._trial_warmth() if trial else self._read(self.warming)
-        self._write(self.warmth, given)
+        given = self._trial_thermal_force() if trial else self._read(self.thermal_force)
+        self._write(self.chosen_thermal_force, given)
 
-    def _trial_warmth(self) -> Floats:
+    def _trial_thermal_force(self) -> Floats:
         """What a stretch by temperature gives to the displacement now, (n,), energy/volume."""
         raise NotImplementedError
 
@@ -121,7 +120,7 @@ class AtPoints:
     def _named(self) -> dict[str, Any]:
         named = {f"{_VARIABLE}{name}": v for name, v in self.variables.items()}
         named |= {"stress": self._stress, "stored": self.stored, "dissipated": self.dissipated}
-        return named | ({"warming": self.warming} if self.warming else {})
+        return named | ({"thermal_force": self.thermal_force} if self.thermal_force else {})
 
     def _zero(self, shape: tuple[int, ...]) -> Any:
         cell = self._mesh.basix_cell()

@@ -112,11 +112,11 @@ class Heated(Idealisation):
         """Take over the temperature over that without stress."""
         self._temperature.value = value
 
-    def warmth(self, stored: Any, stress: Any, gradient: Any) -> Any:
-        """What a stretch s by temperature gives where displacements and internal variables stay.
+    def thermal_force(self, stored: Any, stress: Any, gradient: Any) -> Any:
+        """Thermodynamic force conjugate to a stretch s by temperature.
 
-        It is `d(s^3 W(F/s)) / ds = s^2 (3 W - P : F/s)`, without `s^2`, and `-tr(P)` at small
-        strain.
+        What it gives where displacements and internal variables stay is `d(s^3 W(F/s)) / ds =
+        s^2 (3 W - P : F/s)`, here without `s^2`, and `-tr(P)` at small strain.
 
         Args:
             stored: Energy W per volume without stress.

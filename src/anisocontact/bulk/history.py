@@ -136,7 +136,7 @@ class BodyHistory(AtPoints):
             parts += [(self.stored, stored), (self.dissipated, self.dissipated + lost)]
             if heated:
                 stress, gradient = seen(self.piola(u)), seen(ufl.grad(u))
-                parts.append((self.warming, heated.warmth(stored, stress, gradient)))
+                parts.append((self.thermal_force, heated.thermal_force(stored, stress, gradient)))
         self._kept = [variable for variable, _ in parts]
         # one expression: what the parts share is compiled and evaluated once
         components = [one for _, part in parts for one in _components(part)]
@@ -154,8 +154,8 @@ class BodyHistory(AtPoints):
     def _trial_stress(self) -> Floats:
         return self._now()[self._kept.index(self._stress)]
 
-    def _trial_warmth(self) -> Floats:
-        return self._now()[self._kept.index(self.warming)]
+    def _trial_thermal_force(self) -> Floats:
+        return self._now()[self._kept.index(self.thermal_force)]
 
     def _now(self) -> list[Floats]:
         """What is kept of an accepted increment, of the displacement now, each (points, ...)."""

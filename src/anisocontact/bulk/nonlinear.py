@@ -20,7 +20,7 @@ from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import CellPressures
-from anisocontact.bulk.warming import Warming
+from anisocontact.bulk.thermal_work import ThermalWork
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -51,7 +51,7 @@ class NonlinearBulk:
         dx = body_measure(model)
         self._pressures = CellPressures(model, given, self._u, dx, self.heated)
         self.histories = self._histories(model, given, full)
-        self._warming = Warming(model, self.heated, self.histories, full)
+        self._thermal_work = ThermalWork(model, self.heated, self.histories, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
         laws = {**given, **self.histories}
         forms = _Forms(model, laws, self.heated, self._u, v, du, dx, full)
@@ -148,7 +148,7 @@ class NonlinearBulk:
         """Energy that changes of temperature give to bodies that are held, `int dW/dT dT`.
 
         The mean of both is exact where W is quadratic in displacements and temperatures, as the
-        mean of forces is for their work. Of bodies with a history it is `Warming`'s.
+        mean of forces is for their work. Of bodies with a history it is `ThermalWork`'s.
 
         Args:
             start: Displacement of the nodes this rank owns at the last accepted state, length.
@@ -171,11 +171,11 @@ class NonlinearBulk:
             return self._without_histories()
 
         rises = {name: value - before[name] for name, value in now.items()}
-        first = stored(start, now) - stored(start, before) + self._warming(rises, trial=False)
+        first = stored(start, now) - stored(start, before) + self._thermal_work(rises, trial=False)
         then = -stored(u, before) + stored(u, now)
         for body in self._points:
             body.evaluate()
-        return first, then + self._warming(rises, trial=True)
+        return first, then + self._thermal_work(rises, trial=True)
 
     @cached_property
     def _of_cells(self) -> CellIntegrals:

@@ -175,20 +175,20 @@ class BodyPoints(AtPoints):
         self._gradient = self._at_points(self._ideal.seen(ufl.grad(u), u))
         self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
         self._true_stress = self._at_points(self._ideal.seen(cauchy_stress(self, u), u))
-        self._energy_now = self._zero(())
-        self._of_heat: Any = self._heat_expression(heated, u) if heated else None
+        self._thermal: Any = self._thermal_expression(heated, u) if heated else None
         self._last: tuple[Strain, PointResult]
         self.evaluate()
         self.write_tangent()
         self.stores = self._last[1].stored is not None
 
-    def _heat_expression(self, heated: Heated, u: Any) -> Any:
+    def _thermal_expression(self, heated: Heated, u: Any) -> Any:
         """What a stretch by temperature gives, and the volume without stress over the reference.
 
         What is elastic against changes of volume is not in it: pressures of cells have that.
         """
+        self._energy_now = self._zero(())
         gradient = heated.seen(ufl.grad(u), u)
-        given = heated.warmth(self._energy_now, self._piola, gradient)
+        given = heated.thermal_force(self._energy_now, self._piola, gradient)
         return self._at_points(ufl.as_vector([given, heated.stretch**3]))
 
     def piola(self, u: Any) -> Any:
@@ -223,15 +223,15 @@ class BodyPoints(AtPoints):
     def _trial_stress(self) -> Floats:
         return np.asarray(self._true_stress.eval(self._mesh, self._cells), dtype=np.float64)
 
-    def _trial_warmth(self) -> Floats:
-        return self._heat()[:, 0]
+    def _trial_thermal_force(self) -> Floats:
+        return self._thermal_values()[:, 0]
 
-    def _heat(self) -> Floats:
-        """Values of `_heat_expression` at the last trial, (points, 2)."""
+    def _thermal_values(self) -> Floats:
+        """Values of `_thermal_expression` at the last trial, (points, 2)."""
         _, result = self._last
         if result.stored is not None:
             self._write(self._energy_now, result.stored)
-        return np.asarray(self._of_heat.eval(self._mesh, self._cells)).reshape(-1, 2)
+        return np.asarray(self._thermal.eval(self._mesh, self._cells)).reshape(-1, 2)
 
     def write_tangent(self) -> None:
         """Bring the tangent to where the stress is."""
@@ -249,9 +249,9 @@ class BodyPoints(AtPoints):
         if result.stored is not None:
             self._write(self.stored, result.stored)
         lost = result.dissipated
-        if self._of_heat is not None:
-            given, volume = self._heat().T
-            self._write(self.warming, given)
+        if self._thermal is not None:
+            given, volume = self._thermal_values().T
+            self._write(self.thermal_force, given)
             lost = lost if lost is None else volume * lost
         if lost is not None:
             self._write(self.dissipated, self._read(self.dissipated) + lost)

@@ -19,7 +19,7 @@ from anisocontact.bulk.materials import body_measure
 from anisocontact.mesh import Model
 
 
-class Warming:
+class ThermalWork:
     """Energy that rises of temperature give to bodies with a history.
 
     Args:
@@ -49,7 +49,7 @@ class Warming:
             if name in self._histories:
                 body, rise = heated[name], self._rises[name]
                 rate = weight * body.stretch**2 * body.stretches * rise
-                power += rate * self._histories[name].warmth * dx(i, degree=degree)
+                power += rate * self._histories[name].chosen_thermal_force * dx(i, degree=degree)
         self._form = compiled(power, self._comm)
 
     def __call__(self, rises: Mapping[str, float], trial: bool) -> float:
@@ -64,5 +64,5 @@ class Warming:
             return 0.0
         for name, body in self._histories.items():
             self._rises[name].value = rises[name]
-            body.take_warmth(trial)
+            body.choose_thermal_force(trial)
         return float(self._comm.allreduce(fem.assemble_scalar(self._form)))
