@@ -32,7 +32,8 @@ origin = [0, 0, 0]
 size = [10, 1, 1]
 cells = [10, 1, 1]
 [material.rod]
-model = "linear-elastic"
+model = "{model}"
+{more}
 E = 1000.0
 nu = 0.3
 expansion = 1e-4
@@ -74,10 +75,10 @@ def _heated(material: Any, held: dict[str, Any], increments: int) -> Accepted:
     return [*Solver(problem, steps).run()][-1]
 
 
-def _rod(tmp_path: Any, increments: int) -> Accepted:
+def _rod(tmp_path: Any, increments: int, model: str = "linear-elastic", more: str = "") -> Accepted:
     """A rod that sticks and slips on a floor as it is heated."""
     case = tmp_path / "case.toml"
-    case.write_text(ROD.format(increments=increments))
+    case.write_text(ROD.format(model=model, more=more, increments=increments))
     return [*build(load(case)).solver.run()][-1]
 
 
@@ -126,7 +127,10 @@ def test_what_is_left_at_finite_strain_is_of_second_order(model: str) -> None:
     assert left[0] > 3.5 * left[1] > 3.5**2 * left[2] > 0.0
 
 
-def test_heat_is_turned_into_friction(tmp_path: Any) -> None:
+@pytest.mark.parametrize(
+    ("model", "more"), [("linear-elastic", ""), ("plastic", "yield_stress = 3.0")]
+)
+def test_heat_is_turned_into_friction(tmp_path: Any, model: str, more: str) -> None:
     """Requirement: what a rod rubs off as it expands on a rough floor is what heats it.
 
     Source: first law; nothing else works, supports stand still. Tolerance: the edge of what slips
@@ -134,7 +138,7 @@ def test_heat_is_turned_into_friction(tmp_path: Any) -> None:
     increments: a factor 3 of 4 from one number to its double, less than 1 % of the work at last;
     five sixths of that work are friction.
     """
-    runs = [_rod(tmp_path, n).energies for n in (4, 8, 16)]
+    runs = [_rod(tmp_path, n, model, more).energies for n in (4, 8, 16)]
     left = [abs(one["residual"]) for one in runs]
     assert left[0] > 3.0 * left[1] > 9.0 * left[2]
     assert left[-1] < 0.01 * runs[-1]["external"]

@@ -307,6 +307,7 @@ def test_friction_across_the_plane(ideal: Idealisation, multipliers: bool, order
     cos, sin = np.cos(angle), np.sin(angle)
     along = (first * cos) ** 2 + (second * sin) ** 2
     across = (first**2 - second**2) * cos * sin
-    # the plane is seen from +y: z is to its right
-    assert abs(force[2] / force[0]) == pytest.approx(across / along, rel=3e-3)
-    assert abs(force[0] / force[1]) == pytest.approx(np.sqrt(along), rel=5e-3)
+    # the angle is about the normal from the master to the slave, y: axes (cos, 0, -sin) and
+    # (-sin, 0, -cos), so that what is across is on the other side than what is along
+    assert force[2] / force[0] == pytest.approx(-across / along, rel=3e-3)
+    assert force[0] / force[1] == pytest.approx(-np.sqrt(along), rel=5e-3)
