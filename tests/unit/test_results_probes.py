@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -143,6 +146,7 @@ def test_a_section_through_nodes(run, order, cell, z):
     """
     text = CASE.replace("normal = [0, 0, 2]", "normal = [0, 0, 2]\nabout = [2, 1, 0]")
     text = text.replace("point = [0, 0, 1.4]", f"point = [0, 0, {z}]")
+    text = text.replace('group = "bar.top"\nabout', 'group = "bar.bottom"\nabout')
     first, last = text.index("[[step]]"), text.index("[output]")
     step = '[[step]]\nname = "back"\nincrements = 1\nbody_force = {{ bar = {{ z = -2 }} }}\n'
     held = 'displacement = {{ "bar.bottom" = {{ x = 0, y = 0, z = 0 }} }}\n'
@@ -261,3 +265,68 @@ def test_moments_of_a_beam_that_bends(run, model):
         k = np.sqrt(12.0 * 10.0 / 1000.0)
         arm = 0.01 / (10.0 * k) * (10.0 * k - np.tanh(10.0 * k))
         assert outer == pytest.approx(0.01 * (10.1 - 5.0) - 10.0 * arm, abs=0.02 * 10.0 * arm)
+
+
+ON_A_BED = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [2, 1, 1]
+cells = [2, 1, 2]
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0.0
+
+[elastic_support."block.bottom"]
+normal = 50
+tangential = 20
+
+[[step]]
+name = "load"
+increments = 1
+force = { "block.top" = { x = 0.03, z = -0.1 } }
+
+[output]
+pictures = false
+
+[output.resultant.foot]
+group = "block.bottom"
+about = [1, 0.5, 1]
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=[pytest.mark.mpi, pytest.mark.slow])])
+def test_resultant_of_an_elastic_support(tmp_path, ranks):
+    """Requirement: an elastic support is one of the supports of its group, as in `reactions`:
+    force and moment balance those of the load, which are about the middle of the top.
+
+    Source: balance of forces and moments. Tolerance: round-off of the solution.
+    """
+    (tmp_path / "case.toml").write_text(ON_A_BED)
+    out = tmp_path / "out"
+    arguments = ["run", str(tmp_path / "case.toml"), "-o", str(out)]
+    if ranks == 1:
+        assert main(arguments) == 0
+    else:
+        if shutil.which("mpirun") is None:
+            pytest.skip("no mpirun")
+        command = ["mpirun", "-n", str(ranks), sys.executable, "-m", "anisocontact", *arguments]
+        subprocess.run(command, check=True, capture_output=True, timeout=100)
+    foot = Results(out).summary["resultants"]["foot"]
+    assert np.allclose(foot["force"], [-0.03, 0.0, 0.1], atol=1e-11)
+    assert np.allclose(foot["force"], Results(out).summary["reactions"]["block.bottom"], atol=1e-11)
+    assert np.allclose(foot["moment"], 0.0, atol=1e-11)
+
+
+def test_resultant_of_a_group_that_nothing_holds(tmp_path, capsys):
+    """Requirement: it is refused in one line with the groups that are held, before anything is
+    written: it would be zero, though a contact or a load may act there."""
+    text = ON_A_BED.replace('group = "block.bottom"', 'group = "block.top"')
+    (tmp_path / "case.toml").write_text(text)
+    for command in (["check"], ["run", "-o", str(tmp_path / "out")]):
+        assert main([command[0], str(tmp_path / "case.toml"), *command[1:]]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "output.resultant.foot.group: no support holds a node of 'block.top'" in line
+        assert "groups with supports: block.bottom;" in line
+    assert not (tmp_path / "out").exists()

@@ -30,6 +30,7 @@ from anisocontact.case.units import doubts
 from anisocontact.contact import Contact
 from anisocontact.interface import TangentialLaw
 from anisocontact.mesh import Model
+from anisocontact.results.resultants import check_resultants
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import (
     CoupledFace,
@@ -161,7 +162,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
             ties=[Tie(**section.given()) for section in case.tie],
             cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
         )
-    _check_output(case, problem)
+    _check_output(case, problem, steps)
     return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
 
 
@@ -184,12 +185,12 @@ def _contacts(
     ]
 
 
-def _check_output(case: Case, problem: Problem) -> None:
-    """Refuse probes beside the mesh and resultants of groups that are not there."""
+def _check_output(case: Case, problem: Problem, steps: Sequence[Step]) -> None:
+    """Refuse probes beside the mesh and resultants of groups that are not there, or not held."""
     for name, section in case.output.probe.items():
         section.probe().places(problem.model, f"output.probe.{name}")
-    for name, wanted in case.output.resultant.items():
-        wanted.resultant().nodes(problem, f"output.resultant.{name}")
+    wanted = {name: one.resultant() for name, one in case.output.resultant.items()}
+    check_resultants(wanted, problem, steps)
 
 
 def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:

@@ -6,7 +6,7 @@ its nodes are in the mesh: moments are taken there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import small_strain
-from anisocontact.solver import Problem
+from anisocontact.solver import Problem, Step
 
 #: Distance of a node from a plane, over the largest of the body, that is rounding.
 _IN_PLANE = 1e-9
@@ -104,6 +104,36 @@ class SectionResultant:
 
 
 type Resultant = GroupResultant | SectionResultant
+
+
+def check_resultants(
+    resultants: Mapping[str, Resultant], problem: Problem, steps: Sequence[Step]
+) -> dict[str, Ints]:
+    """Nodes of resultants, by their names; collective.
+
+    Args:
+        resultants: Forces and moments that are wanted, by name.
+        problem: The problem.
+        steps: Its steps, which hold facet groups.
+
+    Raises:
+        InputError: One is that of no group or body of the mesh, of a plane that does not cut its
+            body, or of a group that nothing holds.
+    """
+    found = {n: what.nodes(problem, f"output.resultant.{n}") for n, what in resultants.items()}
+    held = dict.fromkeys([*problem.guides.groups, *problem.attached.bedded, *problem.coupled])
+    held |= dict.fromkeys(group for step in steps for group in step.prescribed_groups())
+    nodes = np.unique(np.concatenate([np.zeros(0, int), *map(problem.model.nodes, held)]))
+    for name, what in resultants.items():
+        touched = problem.comm.allreduce(int(np.isin(found[name], nodes).sum()))
+        if isinstance(what, GroupResultant) and not touched:
+            text = (
+                f"no support holds a node of {what.group!r}, so that it carries nothing; groups "
+                f"with supports: {', '.join(held) or 'none'}; the force of a contact is in "
+                "`contacts`, one through a body that of a section"
+            )
+            raise InputError(text, f"output.resultant.{name}.group")
+    return found
 
 
 def resultant(what: Resultant, problem: Problem, nodes: Ints) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.results.quantities import CONTACT, RIGID, numbers
-from anisocontact.results.resultants import Resultant, resultant
+from anisocontact.results.resultants import Resultant, check_resultants, resultant
 from anisocontact.results.round_area import SymmetryImages, round_radius
 from anisocontact.results.slave_points import SlavePoints
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
@@ -33,7 +33,7 @@ class Observer:
         resultants: Forces and moments that are wanted, by name.
 
     Raises:
-        InputError: A resultant is that of no group or body of the mesh.
+        InputError: A resultant is that of no group or body of the mesh, or nothing holds it.
     """
 
     def __init__(
@@ -43,12 +43,10 @@ class Observer:
         resultants: Mapping[str, Resultant] = MappingProxyType({}),
     ) -> None:
         self._problem = problem
-        self._resultants = {
-            name: (what, what.nodes(problem, f"output.resultant.{name}"))
-            for name, what in resultants.items()
-        }
         model = problem.model
         steps = list(steps)
+        nodes = check_resultants(resultants, problem, steps)
+        self._resultants = {name: (what, nodes[name]) for name, what in resultants.items()}
         self._supports = named_groups(
             [problem.holding, *(step.prescribed_groups() for step in steps)]
         )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import warnings
 
+import numpy as np
+
 from anisocontact.base.array_types import Floats
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -93,9 +95,15 @@ class ReportedSystem(AssembledSystem):
         return self.assembly.bodies.inner(self._bodies.nodal).reshape(-1, 3)
 
     def support_forces(self) -> Floats:
-        """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force."""
+        """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force.
+
+        Of elastic ones as well, as in `reactions`, not of springs.
+        """
         self.reduction.recover()
-        return self._accepted.reaction.reshape(-1, 3)
+        forces = self._accepted.reaction
+        if self.attached.beds:
+            forces = forces + self.layout.assembled(self.attached.beds.force(self._bodies.nodal))
+        return np.asarray(forces.reshape(-1, 3))
 
     def mean_displacement(self, group: str, weights: Floats) -> Floats:
         """Mean displacement of a facet group in the accepted state, (3,), length.
