@@ -84,6 +84,11 @@ REACTION = 'reaction = "block.top"'
             "with von_mises at probe 'middle' one of",
         ),
         ("value = 10.0", "value = -10.0", "step[0].until.value: -10.0 given without along"),
+        (
+            "[surface.floor]",
+            '[elastic_support."block.top"]\ntangential = 5\n\n[surface.floor]',
+            "step 'press'.until.reaction: 'block.top' given, whose elastic support no event sees",
+        ),
     ],
 )
 def test_mistakes(refused: Callable[..., str], old: str, new: str, line: str):

@@ -217,6 +217,9 @@ def check_events(problem: Problem, steps: Sequence[Step]) -> None:
             measure = _measure(problem, until, field)
             if until.measure is not None:  # what is asked for may not be there
                 measure(None)
+        elif until.reaction in problem.attached.bedded:
+            text = f"{until.reaction!r} given, whose elastic support no event sees the force of"
+            raise InputError(f"{text}; wait for a displacement of it", f"{field}.reaction")
         elif until.reaction not in supported:
             known = ", ".join(dict.fromkeys(supported)) or "none"
             text = f"{until.reaction!r} given, groups with supports: {known}"
