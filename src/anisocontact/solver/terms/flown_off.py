@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Locals
-from anisocontact.contact import Contact
+from anisocontact.base.array_types import Floats
+from anisocontact.solver.terms.clearance import box, box_distances
 from anisocontact.solver.terms.free_body import FreeBody
 
 #: Sizes of a body that it may come beyond what it could reach when it began to move.
@@ -76,38 +75,12 @@ def farthest_way(free: FreeBody, begun: Floats) -> float:
         free: The body.
         begun: Displacement of the local nodes when it began to move, (nodes, 3), length.
     """
-    comm = free.contacts[0].space.mesh.comm
-    x = free.contacts[0].space.tabulate_dof_coordinates()
-    own = _box((x + begun)[free.nodes], comm)
-    ways = [
-        _distance(own, _box((x + begun)[_others(contact, side)], comm))
-        for contact, side in zip(free.contacts, free.sides, strict=True)
-        if contact.of_two_groups  # a surface is below it wherever it is
-    ]
-    return BEYOND * _diameter(free) + max(ways, default=0.0)
+    # a surface is below it wherever it is
+    return BEYOND * _diameter(free) + max(box_distances(free, begun), default=0.0)
 
 
 def _diameter(free: FreeBody) -> float:
     """Diagonal of the box around a body as it is meshed, length; collective."""
     space = free.contacts[0].space
-    low, high = _box(space.tabulate_dof_coordinates()[free.body.nodes], space.mesh.comm)
+    low, high = box(space.tabulate_dof_coordinates()[free.body.nodes], space.mesh.comm)
     return float(np.linalg.norm(high - low))
-
-
-def _others(contact: Contact, side: float) -> Locals:
-    """Local nodes of what a body touches in a contact of two groups."""
-    slave, master = contact.nodes_of_groups
-    return master if side > 0.0 else slave
-
-
-def _box(places: Floats, comm: Any) -> tuple[Floats, Floats]:
-    """Lowest and highest corner of a box around places of all ranks, (3,) each."""
-    lowest = comm.allgather(places.min(axis=0, initial=np.inf))
-    highest = comm.allgather(places.max(axis=0, initial=-np.inf))
-    return np.min(lowest, axis=0), np.max(highest, axis=0)
-
-
-def _distance(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> float:
-    """Distance of two boxes, length."""
-    apart = np.maximum(one[0] - other[1], other[0] - one[1])
-    return float(np.linalg.norm(np.maximum(apart, 0.0)))

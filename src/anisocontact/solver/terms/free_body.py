@@ -11,6 +11,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.statuses import STICK
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.solver.terms.clearance import clearance, least_gap
 from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 from anisocontact.solver.terms.rigid_prediction import RigidPrediction
 
@@ -18,6 +19,9 @@ from anisocontact.solver.terms.rigid_prediction import RigidPrediction
 TOUCHING = 0.01
 #: Share of the gap that springs let a body close at once, so that it is closed.
 OVERSHOOT = 2.0
+#: Share of what is clear around a body that is far from all that it may touch, by which it may move
+#: at once: two such bodies may come towards each other.
+CLEAR = 0.4
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
 #: Share of what springs carry beyond which loads have to be what they stand against.
@@ -50,6 +54,7 @@ class FreeBody:
         force: Sum of all loads on it, (3,), force.
         pushed: Loads along the motions of `left`, (j,).
         trusted: Whether contact and springs alone are to hold it in this attempt.
+        clear: Distance up to which it meets nothing, see `clearance`, length.
     """
 
     body: ConnectedBody
@@ -67,6 +72,7 @@ class FreeBody:
     force: Floats = field(default_factory=lambda: np.zeros(3))
     pushed: Floats = field(default_factory=lambda: np.zeros(0))
     trusted: bool = False
+    clear: float = 0.0
     _prediction: RigidPrediction = field(init=False)
 
     def __post_init__(self) -> None:
@@ -89,6 +95,7 @@ class FreeBody:
         """
         space = self.contacts[0].space
         self.act_on(where)
+        self.clear = 0.0  # the way of the first equilibrium counts with half of the loads
         self.force = space.mesh.comm.allreduce(load[self.body.nodes].sum(axis=0))
         self.pushed = self.along_free(load[self.body.nodes])
         x, nodes = space.tabulate_dof_coordinates()[self.nodes], self.nodes
@@ -105,6 +112,15 @@ class FreeBody:
         self.nodes = self.touchable
         if where is not None:  # on one process
             self.nodes = self.nodes[where[self.nodes]]
+
+    def look_around(self, u: Floats, where: Flags | None) -> None:
+        """Find out what is clear around it; nothing counts as clear where some nodes are not known.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            where: As of `act_on`.
+        """
+        self.clear = clearance(self, u) if where is None else 0.0
 
     def _within(self, groups: Sequence[Locals]) -> Ints:
         """Nodes of groups that are its own and of this rank."""
@@ -201,19 +217,20 @@ class FreeBody:
 
         A facet; one that nothing touches no farther than it takes, or curved cells would be thrown
         into each other, and one on springs neither: beside stiff springs that hold some of its
-        motions it would turn in the others.
+        motions it would turn in the others. Farther where more is clear.
 
         Args:
             at_start: As of `touched`.
         """
         if not self.sprung and self.touched(at_start):
             return self.size
-        near = [
-            np.abs(c.trial.gap[c.master.located(c.state)]).min(initial=np.inf)
-            for c in self.contacts
-        ]
-        least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
-        return float(min(max(OVERSHOOT * least, TOUCHING * self.size), self.size))
+        least = min(least_gap(contact) for contact in self.contacts)
+        return min(max(OVERSHOOT * least, TOUCHING * self.size), self._farthest)
+
+    @property
+    def _farthest(self) -> float:
+        """How far it may move at once in the air, length."""
+        return max(CLEAR * self.clear, self.size)
 
     def stiffness_in_reach(self, push: Floats, at_start: bool = False) -> float:
         """Stiffness of its springs at which forces carry it as far as `reach`, force/length.
@@ -224,8 +241,14 @@ class FreeBody:
             push: Generalised forces along its free motions, (j,).
             at_start: As of `touched`.
         """
-        predicted = self._prediction
-        return predicted.way(predicted.motion(push)) / self.reach(at_start)
+        return self._way(push) / self.reach(at_start)
+
+    def stiffness_aloft(self, push: Floats) -> float:
+        """The same for what is clear around it in the air, however near it is."""
+        return self._way(push) / self._farthest
+
+    def _way(self, push: Floats) -> float:
+        return self._prediction.way(self._prediction.motion(push))
 
     def stiffness_to_land(
         self, push: Floats, supports: Sequence[Contact], at_start: bool = False
@@ -351,35 +374,3 @@ def closed_points(contact: Contact, at_start: bool = False) -> Flags:
     if at_start:
         closed |= contact.trials.start["multiplier"] > 0.0
     return np.asarray(closed)
-
-
-def held_contacts(bodies: Sequence[FreeBody], at_start: bool = False) -> list[list[Contact]]:
-    """Contacts of each of some free bodies whose other side is held; collective.
-
-    What none of them is on is held, and a body that touches what is held is so itself.
-
-    Args:
-        bodies: All free bodies.
-        at_start: As of `FreeBody.touched`.
-    """
-    on = {id(c): c for one in bodies for c in one.contacts}
-    closed = {
-        k: c.space.mesh.comm.allreduce(int(closed_points(c, at_start).any())) > 0
-        for k, c in on.items()
-    }
-    owners = {k: [i for i, one in enumerate(bodies) if one.meets(c)] for k, c in on.items()}
-    held: set[int] = set()
-
-    def on_held(i: int) -> list[Contact]:
-        sides = zip(bodies[i].contacts, bodies[i].sides, strict=True)
-        return [c for c, side in sides if side and held.issuperset(set(owners[id(c)]) - {i})]
-
-    while True:
-        found = {
-            i
-            for i in range(len(bodies))
-            if i not in held and any(closed[id(c)] for c in on_held(i))
-        }
-        if not found:
-            return [on_held(i) for i in range(len(bodies))]
-        held |= found

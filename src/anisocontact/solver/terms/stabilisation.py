@@ -25,8 +25,9 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.body_motion import BodyMotion
 from anisocontact.solver.terms.flown_off import flown_off
-from anisocontact.solver.terms.free_body import FreeBody, held_contacts
+from anisocontact.solver.terms.free_body import FreeBody
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
+from anisocontact.solver.terms.held_contacts import held_contacts
 from anisocontact.solver.terms.lost_work import LostWork
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
@@ -263,6 +264,7 @@ class Stabilisation(Term):
         self._anchor = u.copy()
         for free, held in zip(self._free, held_contacts(self._free), strict=True):
             if not free.trusted:
+                free.look_around(u, self._where)
                 free.stiffness = max(self._next_stiffness(free, held, force), LEAST * self._scale)
         return True
 
@@ -291,7 +293,8 @@ class Stabilisation(Term):
         """
         now, carried = free.stiffness, free.carried(force)
         if not free.touched():
-            return max(FADE * now, min(free.stiffness_in_reach(carried), now))
+            most = max(now, free.stiffness_aloft(carried))  # less and less is clear
+            return max(FADE * now, min(free.stiffness_in_reach(carried), most))
         fades = min(FADE * now, free.stiffness_in_reach(free.pushed))
         needed = free.stiffness_to_land(carried, held) if self._count <= PATIENCE else 0.0
         return max(fades, min(needed, RAISE * now))
