@@ -29,7 +29,7 @@ from anisocontact.solver.strategies.costs import (
     too_large,
 )
 from anisocontact.solver.strategies.iterative.defaults import MIXED
-from anisocontact.solver.strategies.krylov import PASSES_LINEAR, krylov_pays
+from anisocontact.solver.strategies.krylov import PASSES, PASSES_LINEAR, krylov_pays
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -42,11 +42,12 @@ MOST_CONTACT = 8000
 #: linear milled block 0.6 times at 4.8. Linear sheets take 1.1 to 2 times from 5.3 on, strips and
 #: sheets at finite strain 1.2 to 1.4 times from 4.2 on.
 WIDE_LINEAR, WIDE, POWER = 5.0, 4.1, 2.0 / 3.0
-#: Elimination of the masters of linear bodies over products with the stiffness of a correction by
-#: Krylov iterations up to which it pays. A ball pressed on a block and dragged over it takes, over
-#: `iterative`: 1.9 times at 2.9, 1.5 at 2.2, 1.2 at 1.4 (tetrahedra of order 2), 1.0 at 1.9 and 1.2
-#: (order 1); block on block, n = 36, 0.8 at 0.9.
-MOST_ELIMINATED = 2.0
+#: Elimination of masters over products with the stiffness of a correction by Krylov iterations up
+#: to which it pays. A ball pressed on a block, and dragged over it where bodies are linear, takes
+#: over `iterative`: 1.9 times at 2.9, 1.5 at 2.2, 1.2 at 1.4 (tetrahedra of order 2), 1.0 at 1.9
+#: and 1.2 (order 1); block on block, n = 36, 0.8 at 0.9. At finite strain: 2.0 times at 1.7, 1.6 at
+#: 1.3, 1.3 at 0.8 (order 2), 1.2 at 1.2 (order 1).
+MOST_ELIMINATED_LINEAR, MOST_ELIMINATED = 2.0, 1.0
 #: Contact unknowns of linear bodies on several processes beyond which the first process, which has
 #: their dense matrix, keeps the others waiting. Two processes, block on block, over `iterative`:
 #: 1.0 at 870 contact unknowns, 0.8 to 1.1 at 1,200 to 1,500, 1.2 at 1,850, 1.4 and 1.7 at 3,000.
@@ -112,8 +113,7 @@ class CondensedStrategy:
                 f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
                 "all costs less than their dense matrix"
             )
-        if problem.linear:
-            yield from _costs_of_masters(task, touched)
+        yield from _costs_of_masters(task, touched)
 
     def solver(
         self,
@@ -156,9 +156,11 @@ def _no_mumps(problem: Problem) -> Iterator[str]:
 
 def _costs_of_masters(task: Task, touched: Flags) -> Iterator[str]:
     """Why masters that are eliminated anew as slave nodes go on would not pay."""
-    problem = task.problem
-    iterations = PASSES_LINEAR * problem.bulk.stiffness.getInfo()["nz_used"]
-    if elimination(problem, touched) > MOST_ELIMINATED * iterations and any(krylov_pays(task)):
+    problem, passes, most = task.problem, PASSES, MOST_ELIMINATED
+    if problem.linear:
+        passes, most = PASSES_LINEAR, MOST_ELIMINATED_LINEAR
+    iterations = passes * problem.bulk.stiffness.getInfo()["nz_used"]
+    if elimination(problem, touched) > most * iterations and any(krylov_pays(task)):
         yield (
             f"{3 * int(touched.sum())} contact unknowns, most of them of masters: Krylov "
             "iterations are faster than to eliminate these"
