@@ -92,7 +92,7 @@ class ReportedSystem(AssembledSystem):
     def inner_forces(self) -> Floats:
         """Forces that the cells put on the nodes this rank owns, accepted, (nodes, 3), force."""
         self.reduction.recover()
-        return self.assembly.bodies.inner(self._bodies.nodal).reshape(-1, 3)
+        return self.assembly.bodies.accepted_inner(self._bodies.nodal).reshape(-1, 3)
 
     def support_forces(self) -> Floats:
         """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force.

@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.base.fenicsx import MPI, Mat, Vec
 from anisocontact.bulk import LinearBulk, NonlinearBulk
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.form import FormBulk
@@ -63,7 +63,9 @@ class Bodies(Term):
         self._heat = dict.fromkeys(bulk.heated, 0.0)
         self._start: Vec | None = self._u.copy() if bulk.heated else None
         self.again, self.largest = False, 0.0
-        self._inner = np.zeros(0)
+        #: Forces of the last evaluation and where it was, and those of the accepted state.
+        self._inner, self._inner_at = np.zeros(0), np.zeros(0)
+        self._accepted: Floats | None = None
         #: Displacement and forces at the last tangent.
         self._written: tuple[Vec, Floats] | None = None
 
@@ -75,7 +77,15 @@ class Bodies(Term):
     def inner(self, u: Floats) -> Floats:
         """The same of all unknowns this rank owns: those of other fields have a residual, too."""
         self._inner = -np.asarray(self.bulk.force(self._owned(u)).array_r)
+        self._inner_at = np.array(self._u.array_r)
         return self._inner
+
+    def accepted_inner(self, u: Floats) -> Floats:
+        """The same in the accepted state `u`; collective.
+
+        A material that knows time would go on from there by an increment if it was asked again.
+        """
+        return self.inner(u) if self._accepted is None else self._accepted
 
     def missed(self) -> Floats:
         """What forces have changed by since the last tangent, beyond what it says.
@@ -144,6 +154,11 @@ class Bodies(Term):
 
     @override
     def accept(self, u: Floats) -> float:
+        if self.bulk.histories:
+            there = np.array_equal(self._inner_at, self._owned(u).array_r)
+            if not self.unknowns.comm.allreduce(there, MPI.LAND):
+                self.inner(u)
+            self._accepted = self._inner
         self.bulk.commit(self._owned(u))
         self._heat = self._temperatures_now()
         if self._start is not None:
