@@ -108,6 +108,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
     for name, stride in accepted.rolled.items():
         yield f"rolled {name}", f"contact {name!r}: {stride}"
+    for name, faces in accepted.faces.items():
+        yield from ((f"face {name} {one.body}", f"contact {name!r}: {one}") for one in faces)
     for name, count in accepted.slivers.items():
         nodes = "slave node touches" if count == 1 else "slave nodes touch"
         yield f"slivers {name}", f"contact {name!r}: {count} {nodes} {SLIVERS}"

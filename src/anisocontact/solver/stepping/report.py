@@ -12,6 +12,7 @@ from anisocontact.base.arrays import by_place
 from anisocontact.base.shown import shown
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.rolling_watch import Stride
+from anisocontact.solver.stepping.turned_faces import TurnedFace
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.rotations import BodyRotation
@@ -74,6 +75,8 @@ class Accepted:
             name of the contact; contacts without any are left out.
         rolled: How far rigid bodies that are free to turn have rolled in it, where that is past
             several slave nodes, by name of the contact.
+        faces: Faces at small strain that have turned so far that their pressure has an arm which is
+            not there, by name of the contact; contacts without any are left out.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -112,6 +115,7 @@ class Accepted:
     relaxed: bool = False
     slivers: dict[str, int] = field(default_factory=dict)
     rolled: dict[str, Stride] = field(default_factory=dict)
+    faces: dict[str, list[TurnedFace]] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""
     missed: str = ""

@@ -32,14 +32,10 @@ from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.rolling_watch import RollingWatch
 from anisocontact.solver.stepping.run_position import RunPosition, fraction
-from anisocontact.solver.stepping.same_problem import (
-    as_array,
-    check_run,
-    described_run,
-    size_of,
-)
+from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run, size_of
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
+from anisocontact.solver.stepping.turned_faces import TurnedFaceWatch
 from anisocontact.solver.strategies.choice import choose
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.strategy import IncrementSolver, Task
@@ -118,7 +114,8 @@ class Solver(Uncopied):
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
-        self._cut_faces, self._rolling = CutFaceWatch(problem), RollingWatch(problem)
+        watches = CutFaceWatch(problem), RollingWatch(problem), TurnedFaceWatch(problem)
+        self._cut_faces, self._rolling, self._faces = watches
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
         self._failures = Failures(problem, self.doubtful)
@@ -394,6 +391,7 @@ class Solver(Uncopied):
             relaxed=outcome.relaxed,
             slivers={name: n for name, n in slivers.items() if n},
             rolled=self._rolling.strides(),
+            faces=self._faces.faces(),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
