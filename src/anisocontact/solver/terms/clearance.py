@@ -2,48 +2,48 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Locals
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact import Contact
-
-if TYPE_CHECKING:
-    from anisocontact.solver.terms.free_body import FreeBody
 
 #: Corners of a box, lowest and highest, (3,) each.
 Box = tuple[Floats, Floats]
 
 
-def clearance(free: FreeBody, u: Floats) -> float:
+def clearance(nodes: Ints, contacts: Sequence[Contact], sides: Sequence[float], u: Floats) -> float:
     """Distance up to which a body surely meets nothing, length; collective.
 
     Boxes around meshed surfaces are nearer than these. From surfaces without end it is the least
     gap; none where that is not known.
 
     Args:
-        free: The body.
+        nodes: Local nodes of the body, (k,).
+        contacts: Its contacts.
+        sides: Of each of them, see `FreeBody.sides`.
         u: Displacement of the local nodes, (nodes, 3), length.
     """
-    boxes = box_distances(free, u)
-    gaps = [least_gap(contact) for contact in free.contacts if not contact.of_two_groups]
+    boxes = box_distances(nodes, contacts, sides, u)
+    gaps = [least_gap(contact) for contact in contacts if not contact.of_two_groups]
     return min([*boxes, *(gap if gap < np.inf else 0.0 for gap in gaps)], default=0.0)
 
 
-def box_distances(free: FreeBody, u: Floats) -> list[float]:
+def box_distances(
+    nodes: Ints, contacts: Sequence[Contact], sides: Sequence[float], u: Floats
+) -> list[float]:
     """Distances of boxes around a body and what it touches in contacts of two groups; collective.
 
-    Args:
-        free: The body.
-        u: Displacement of the local nodes, (nodes, 3), length.
+    Arguments as of `clearance`.
     """
-    comm = free.contacts[0].space.mesh.comm
-    places = free.contacts[0].space.tabulate_dof_coordinates() + u
-    own = box(places[free.body.nodes], comm)
+    space = contacts[0].space
+    places = space.tabulate_dof_coordinates() + u
+    own = box(places[nodes], space.mesh.comm)
     return [
-        _distance(own, box(places[_others(contact, side)], comm))
-        for contact, side in zip(free.contacts, free.sides, strict=True)
+        _distance(own, box(places[_others(contact, side)], space.mesh.comm))
+        for contact, side in zip(contacts, sides, strict=True)
         if contact.of_two_groups
     ]
 

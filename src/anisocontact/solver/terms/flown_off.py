@@ -76,7 +76,8 @@ def farthest_way(free: FreeBody, begun: Floats) -> float:
         begun: Displacement of the local nodes when it began to move, (nodes, 3), length.
     """
     # a surface is below it wherever it is
-    return BEYOND * _diameter(free) + max(box_distances(free, begun), default=0.0)
+    ways = box_distances(free.body.nodes, free.contacts, free.sides, begun)
+    return BEYOND * _diameter(free) + max(ways, default=0.0)
 
 
 def _diameter(free: FreeBody) -> float:

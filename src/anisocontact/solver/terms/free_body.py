@@ -120,7 +120,9 @@ class FreeBody:
             u: Displacement of the local nodes, (nodes, 3), length.
             where: As of `act_on`.
         """
-        self.clear = clearance(self, u) if where is None else 0.0
+        self.clear = 0.0
+        if where is None:
+            self.clear = clearance(self.body.nodes, self.contacts, self.sides, u)
 
     def _within(self, groups: Sequence[Locals]) -> Ints:
         """Nodes of groups that are its own and of this rank."""
