@@ -109,7 +109,7 @@ def test_how_near_a_body_began_is_known_on_all_processes(begun: float, back: boo
 
     Here another process has all points that had a master below them at the start, at a gap.
     """
-    comm = SimpleNamespace(allgather=lambda own: [own, [begun]])
+    comm = SimpleNamespace(allgather=lambda own: [own, begun])
     none, here = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
     contact = SimpleNamespace(
         space=SimpleNamespace(mesh=SimpleNamespace(comm=comm)),

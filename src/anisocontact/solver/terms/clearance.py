@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact import Contact
+from anisocontact.interface import Response
 
 #: Corners of a box, lowest and highest, (3,) each.
 Box = tuple[Floats, Floats]
@@ -21,7 +22,7 @@ def clearance(nodes: Ints, contacts: Sequence[Contact], sides: Sequence[float], 
     gap; none where that is not known.
 
     Args:
-        nodes: Local nodes of the body, (k,).
+        nodes: Local nodes of the body, or those that may touch, (k,).
         contacts: Its contacts.
         sides: Of each of them, see `FreeBody.sides`.
         u: Displacement of the local nodes, (nodes, 3), length.
@@ -50,9 +51,19 @@ def box_distances(
 
 def least_gap(contact: Contact) -> float:
     """Least gap of a trial, length; infinite where no point has a master to meet; collective."""
-    gap = float(np.abs(contact.trial.gap[contact.located()]).min(initial=np.inf))
-    gaps: list[float] = contact.space.mesh.comm.allgather(gap)
-    return min(gaps)
+    return _least(contact, np.abs(contact.trial.gap), contact.trial)
+
+
+def accepted_gap(contact: Contact) -> float:
+    """The same of the accepted increment, negative where points penetrate; collective."""
+    there = contact.accepted.response
+    return _least(contact, there.gap, there)
+
+
+def _least(contact: Contact, gaps: Floats, response: Response) -> float:
+    own = float(gaps[contact.master.located(response.state)].min(initial=np.inf))
+    every: list[float] = contact.space.mesh.comm.allgather(own)
+    return min(every)
 
 
 def box(places: Floats, comm: Any) -> Box:

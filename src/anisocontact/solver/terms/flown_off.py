@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.solver.terms.clearance import box, box_distances
+from anisocontact.solver.terms.clearance import accepted_gap, box, box_distances
 from anisocontact.solver.terms.free_body import FreeBody
 
 #: Sizes of a body that it may come beyond what it could reach when it began to move.
@@ -46,7 +46,7 @@ def _may_come_back(free: FreeBody, far: float) -> bool:
     Not where that has come farther away by `far` and the loads on the body point away from it: a
     surface without end is below a body wherever it is. Collective.
     """
-    gaps = _least_gaps(free)
+    gaps = [accepted_gap(contact) for contact in free.contacts]
     for contact, side, before in zip(free.contacts, free.sides, gaps, strict=True):
         here, now = contact.located(), contact.trial
         if not here.any():
@@ -55,15 +55,6 @@ def _may_come_back(free: FreeBody, far: float) -> bool:
         if (nearer | (side * (now.normal[here] @ free.force) <= 0.0)).any():
             return True
     return False
-
-
-def _least_gaps(free: FreeBody) -> list[float]:
-    """Least gap of each contact of a body in the accepted state, length; collective."""
-    begun = [contact.accepted.response for contact in free.contacts]
-    there = [c.master.located(one.state) for c, one in zip(free.contacts, begun, strict=True)]
-    own = [one.gap[at].min(initial=np.inf) for one, at in zip(begun, there, strict=True)]
-    gaps: list[float] = np.min(free.contacts[0].space.mesh.comm.allgather(own), axis=0).tolist()
-    return gaps
 
 
 def farthest_way(free: FreeBody, begun: Floats) -> float:
@@ -76,7 +67,7 @@ def farthest_way(free: FreeBody, begun: Floats) -> float:
         begun: Displacement of the local nodes when it began to move, (nodes, 3), length.
     """
     # a surface is below it wherever it is
-    ways = box_distances(free.body.nodes, free.contacts, free.sides, begun)
+    ways = box_distances(free.nodes, free.contacts, free.sides, begun)
     return BEYOND * _diameter(free) + max(ways, default=0.0)
 
 

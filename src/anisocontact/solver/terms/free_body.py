@@ -11,7 +11,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.statuses import STICK
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.solver.terms.clearance import clearance, least_gap
+from anisocontact.solver.terms.clearance import accepted_gap, clearance, least_gap
 from anisocontact.solver.terms.free_modes import ConnectedBody, sides_of
 from anisocontact.solver.terms.rigid_prediction import RigidPrediction
 
@@ -137,12 +137,7 @@ class FreeBody:
 
         Nothing where it touches, or where no point of it or of its slaves has a master to meet.
         """
-        gaps = []
-        for contact in self.contacts:
-            gap = contact.last.gap[contact.master.located(contact.last.state)]
-            least = contact.space.mesh.comm.allgather(float(gap.min(initial=np.inf)))
-            gaps.append(min(least))
-        nearest = min(gaps)
+        nearest = min(accepted_gap(contact) for contact in self.contacts)
         if not 0.0 < nearest < np.inf:
             return ""
         return (
