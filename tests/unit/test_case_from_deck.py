@@ -83,7 +83,8 @@ Pull
 *CLOAD
  HEAD, 3, -25.
 *DLOAD
- LOWER, GRAV, 9810., 0., 0., -1.
+ LOWER, GRAV, 9810., 0., , -2.
+ UPPER, GRAV, 9810., 0., 0., -1.
 *VIEWFACTOR
 *END STEP
 """
@@ -150,7 +151,7 @@ def test_what_is_taken_over(deck: Path, capsys: pytest.CaptureFixture[str]):
     have them; a force on nodes is that of all, OP=NEW releases; what is not known is said."""
     case, lines = converted(deck, capsys)
     assert case == WANTED
-    assert lines[0] == "left out  *VIEWFACTOR of line 73"
+    assert lines[0] == "left out  *VIEWFACTOR of line 74"
     assert lines[1].startswith("written ")
     assert 'method = "penalty"' in deck.with_suffix(".toml").read_text()
 

@@ -5,7 +5,6 @@ Source: the keyword reference of Abaqus and of CalculiX.
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -13,32 +12,11 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.case.from_deck import case_of_deck
+from tests.unit.decks import CUBE, case_of, read
+
 from anisocontact.mesh import GmshFile, build_mesh
-from anisocontact.mesh.deck_contents import Deck
-from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.surfaces import make_surface
 
-CUBE = """*NODE
-1, 0, 0, 0
-2, 2, 0, 0
-3, 2, 2, 0
-4, 0, 2, 0
-5, 0, 0, 2
-6, 2, 0, 2
-7, 2, 2, 2
-8, 0, 2, 2
-*ELEMENT, TYPE=C3D8R
-1, 1, 2, 3, 4, 5, 6, 7, 8
-*NSET, NSET=Set-1, GENERATE
-1, 8, 1
-*ELSET, ELSET=Set-1
-1
-*SURFACE, NAME=Top
-Set-1, S2
-*SOLID SECTION, ELSET=Set-1, MATERIAL=M
-,
-"""
 #: Two instances, the second two above the first; sets of the assembly have names of the part.
 ASSEMBLY = """*PART, NAME=Cube
 {part}*END PART
@@ -73,21 +51,6 @@ Head, 3, , -0.1
 Up-1.5, 1, 2
 *END STEP
 """
-
-
-def case_of(tmp_path: Path, text: str) -> tuple[dict, list[str]]:
-    """The case of a deck, and the lines on what was left out."""
-    path = tmp_path / "deck.inp"
-    path.write_text(text)
-    case, left = case_of_deck(path, tmp_path / "case.toml")
-    return tomllib.loads(case), left
-
-
-def read(tmp_path: Path, text: str) -> Deck:
-    """What a deck holds."""
-    path = tmp_path / "deck.inp"
-    path.write_text(text)
-    return read_deck(path)
 
 
 @pytest.mark.parametrize("independent", [False, True])

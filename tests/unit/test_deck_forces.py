@@ -60,6 +60,7 @@ def converted(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str) -> 
     """The case that a deck becomes, and what is said of it."""
     (tmp_path / "cube.inp").write_text(text)
     target = tmp_path / "cube.toml"
+    target.unlink(missing_ok=True)
     assert main(["convert", str(tmp_path / "cube.inp"), str(target)]) == 0
     return tomllib.loads(target.read_text()), capsys.readouterr().out
 
@@ -104,6 +105,34 @@ def test_forces_with_two_amplitudes_are_said(tmp_path: Path, capsys: pytest.Capt
     case, said = converted(tmp_path, capsys, deck(loads))
     assert case["step"][0]["force"] == {"cube.node5": {"z": 1.0}}
     assert "two forces on cube.node5 along z in one step, with different amplitudes" in said
+
+
+def test_pressures_given_twice_in_a_step_add_up(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """A pressure on a face that has one in the same step is added to it, in a later step it
+    replaces, which is told where another set names the face.
+
+    Source: CalculiX CrunchiX 2.11, loadadd.f.
+    """
+    loads = "*DLOAD\nCUBE, P2, 1.\nCUBE, P2, 2.\n*END STEP\n*STEP\n*STATIC\n1., 1.\n"
+    case, said = converted(tmp_path, capsys, deck(f"{loads}*DLOAD\nCUBE, P2, 4."))
+    assert [step["pressure"]["cube.cube_p2"] for step in case["step"]] == [3.0, 4.0]
+    assert "replaces what faces had" not in said
+    case, said = converted(tmp_path, capsys, deck(f"{loads}*DLOAD\n1, P2, 4."))
+    assert "replaces what faces had by cube.cube_p2 in an earlier step: both are there now" in said
+    _, said = converted(tmp_path, capsys, deck(f"{loads}*DLOAD, OP=NEW\n1, P2, 4."))
+    assert "replaces what faces had" not in said
+
+
+def test_an_entry_that_is_not_read_leaves_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    """Requirement: what is said to be left out is, and nothing else."""
+    loads = "*CLOAD\n5, 3, 1.\n5, 4, 2.\n5, 1, 8.\n*DLOAD\nNONE, P1, 3.\nCUBE, BX, 2.\nCUBE, P2, 1."
+    case, said = converted(tmp_path, capsys, deck(loads))
+    assert case["step"][0]["force"] == {"cube.node5": {"x": 8.0, "z": 1.0}}
+    assert case["step"][0]["pressure"] == {"cube.cube_p2": 1.0}
+    assert "a moment on 5; faces on a reference point take them" in said
+    assert "none_p1 has no facets, one facet group is needed; BX on cube; P1, P2" in said
 
 
 @pytest.mark.parametrize("amplitude", ["", ", AMPLITUDE=RAMP"])

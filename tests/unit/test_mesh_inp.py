@@ -170,6 +170,8 @@ MISTAKES = [
     (CUBE.replace("*HEADING", "*SYSTEM\n1, 2"), "*SYSTEM: is not read; write nodes and elements"),
     (CUBE.replace("*HEADING", "*NGEN\n1, 2"), "*NGEN: node 1 is not there"),
     (CUBE.replace("*HEADING", "1, 2, 3"), "line 1: data in front of the first keyword"),
+    (CUBE.replace("*Node, nset=Nall", "*Node, INPUT=none.txt"), "none.txt' does not exist"),
+    (CUBE[: CUBE.index(" 1, 0.")] + CUBE[CUBE.index("*EL") :], "no node: *NODE has no data"),
     (CUBE.replace("*HEADING", "*INCLUDE, INPUT=none.inp"), "does not exist"),
     (CUBE.replace("cube, S2", "cube, S7"), "face 'S7' given, S1 to S6 are read"),
     (CUBE.replace("cube, S2", "9, S2"), "it names a face of element 9, which is not there"),
@@ -206,10 +208,12 @@ def test_what_is_legal_and_hardly_meant_is_said(tmp_path):
     again = CUBE.replace("*ELEMENT,", " 7, 2., 2., 2.\n*ELEMENT,")
     assert file_arrays(written(tmp_path, again)).notes == notes
     other = (
-        again.replace("2., 2., 2.\n*EL", "2., 2., 2.5\n*EL") + "*SURFACE, NAME=None\nshells, S1\n"
+        again.replace("2., 2., 2.\n*EL", "2., 2., 2.5\n*EL")
+        + "*SURFACE, NAME=None\nshells, S1\n*NSET, NSET=both\nLow, Lwo\n"
     )
     assert set(file_arrays(written(tmp_path, other)).notes) - set(notes) == {
         "1 nodes are given once more, at another place: the last one counts",
+        "sets name others that are not there: lwo",
         "surface 'none' has no face of a solid: its set of elements is not there",
     }
     # nodes of a part count in each of its instances
@@ -220,6 +224,21 @@ def test_what_is_legal_and_hardly_meant_is_said(tmp_path):
         if "once more" in note
     )
     assert said.startswith("2 nodes are given once more")
+
+
+def test_data_in_files_and_nodes_of_elements(tmp_path):
+    """Requirement: data that stand in a file of their own are read, and a node set of a set of
+    elements has their nodes; letters of an editor of one byte each stay apart."""
+    start, end = CUBE.index(" 1, 0."), CUBE.index("*ELEMENT")
+    (tmp_path / "nodes.txt").write_text(f"** nodes\n{CUBE[start:end]}")
+    head = CUBE[:start].replace("nset=Nall", "nset=Nall, input=nodes.txt")
+    text = head + CUBE[end:] + "*NSET, NSET=Mine, ELSET=Cube\n*NSET, NSET=\xdcber\n7\n"
+    path = written(tmp_path, text)
+    path.write_bytes(text.encode("latin-1"))
+    deck, plain = read_deck(path), read_deck(written(tmp_path, CUBE))
+    assert deck.nodes == plain.nodes
+    assert sorted(deck.node_sets["MINE"]) == sorted(deck.nodes)
+    assert deck.node_sets["\xdcBER"] == [7]
 
 
 def test_a_case_file_takes_it(tmp_path, monkeypatch):

@@ -54,6 +54,7 @@ class DeckContacts:
     ) -> None:
         self._mesh, self._named, self._tools, self._leave = mesh, named, tools, leave
         self._interaction = ""
+        self._interactions: set[str] = set()
         self._friction: dict[str, list[float]] = {}
         self._penalty: dict[str, float] = {}
         self._pairs: list[Card] = []
@@ -111,6 +112,7 @@ class DeckContacts:
     def read_interaction(self, card: Card) -> None:
         """Take `*SURFACE INTERACTION`; what follows is of it."""
         self._interaction = card.option("NAME").upper()
+        self._interactions.add(self._interaction)
 
     def read_friction(self, card: Card) -> None:
         """Take `*FRICTION`: a coefficient, or two along the axes of the slave.
@@ -118,6 +120,8 @@ class DeckContacts:
         Raises:
             InputError: It is friction of another kind.
         """
+        if not self._interaction:
+            raise InputError("it belongs to no *SURFACE INTERACTION")
         for option, instead in OTHER_FRICTION.items():
             if option in card.options:
                 raise InputError(f"{option} is not taken over; {instead}")
@@ -148,7 +152,13 @@ class DeckContacts:
             raise InputError(text + "compliant layer is a normal penalty")
 
     def read_pair(self, card: Card) -> None:
-        """Take `*CONTACT PAIR`."""
+        """Take `*CONTACT PAIR`.
+
+        Raises:
+            InputError: Its faces may not come apart.
+        """
+        if "TIED" in card.options:
+            raise InputError("TIED: its faces do not come apart; see [[tie]]")
         self._pairs.append(card)
 
     def read_general(self, card: Card) -> None:
@@ -165,6 +175,9 @@ class DeckContacts:
 
     def _of_pairs(self, card: Card) -> Iterator[tuple[str, str, str, dict[str, object]]]:
         name = card.options.get("INTERACTION", "").upper()
+        if name and name not in self._interactions:
+            what = f"there is no *SURFACE INTERACTION {name.lower()}"
+            self._leave(card, f": {what}, its contact is without friction")
         for slave, *others in card.fields():
             if not others:
                 self._leave(card, ": a surface with itself; see self_contact")

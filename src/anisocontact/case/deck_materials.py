@@ -154,6 +154,8 @@ class Materials:
     def read_plastic(self, card: Card) -> None:
         """Take `*PLASTIC`: a curve of yield stress, or two points of one that moves."""
         kind = card.options.get("HARDENING", "ISOTROPIC").upper()
+        if real(card.options.get("RATE") or "0") != 0.0:
+            raise InputError(f"RATE={card.options['RATE']}: yield stress is that of no rate here")
         rows = list(card.fields())
         moves = kind == "KINEMATIC" and len(rows) == 2
         if not (moves or kind == "ISOTROPIC") or any(len(row) > 2 for row in rows):
@@ -243,11 +245,14 @@ class Temperatures:
             self._start |= self._values(card)
         self._now = dict(self._start)
 
-    def prescribed(self, card: Card) -> Iterator[tuple[str, float]]:
+    def prescribed(self, card: Card) -> Iterator[tuple[str, float] | InputError]:
         """Bodies and the temperatures that a `*TEMPERATURE` leads them to, over the start.
 
+        Yields:
+            They, or why a body has none: its temperatures are not the same all over it.
+
         Raises:
-            InputError: They come from a file, or are not the same all over a body.
+            InputError: They come from a file.
         """
         if "FILE" in card.options:
             raise InputError("temperatures of a file; the case has one for each body")
@@ -261,8 +266,9 @@ class Temperatures:
             span = float(np.ptp(rise))
             if span > UNIFORM * np.abs(rise).max():
                 text = f"{body} is at {rise.min():.4g} to {rise.max():.4g} over its start"
-                raise InputError(f"{text}; the case has one temperature for each body")
-            yield body, float(rise[0])
+                yield InputError(f"{text}; the case has one temperature for each body")
+            else:
+                yield body, float(rise[0])
 
     def _values(self, card: Card) -> dict[int, float]:
         found: dict[int, float] = {}

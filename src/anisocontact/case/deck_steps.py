@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.case.deck_forces import NodalForces, StepForces
 from anisocontact.case.deck_materials import Temperatures
 from anisocontact.case.deck_procedures import STATIC
+from anisocontact.case.deck_weights import Weights
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
@@ -31,8 +33,8 @@ MOST = 1000
 
 #: Group, or component of gravity -> what it is given, a number or components.
 type _Given = dict[str, Any]
-#: Key of a step, group or component, what it is given.
-type _Load = tuple[str, str, Any]
+#: Key of a step, group or component, what it is given; or why an entry is not taken over.
+type _Load = tuple[str, str, Any] | InputError
 
 
 @dataclass
@@ -79,6 +81,7 @@ class Steps:
         self._deck, self._mesh, self._named = deck, mesh, named
         self._temperatures = cache(temperatures)
         self._steps: list[_Step] = []
+        self._weights = Weights(deck, list(mesh.bodies))
         self._turned: set[int] = set()
         #: Group of a force or a support -> numbers of its nodes.
         self._members: dict[str, set[int]] = {}
@@ -117,19 +120,29 @@ class Steps:
         if card.name != "TEMPERATURE":  # which has options of its own
             check_options(card)
         amplitude = card.options.get("AMPLITUDE", "").lower()
-        for key, group, given in _LOADS[card.name](self, card):
-            groups = self._steps[-1].keys.setdefault(key, {})
-            if isinstance(given, dict):
-                components = {
-                    name: self.with_amplitude(value, amplitude) for name, value in given.items()
-                }
-                before = groups.get(group, {})
-                if key == "force":
-                    components = _added(before, components, group)
-                groups[group] = {**before, **components}
-            else:
-                groups[group] = self.with_amplitude(given, amplitude)
+        problems: dict[str, None] = {}
+        for load in _LOADS[card.name](self, card):
+            try:
+                if isinstance(load, InputError):
+                    raise load
+                self._add(*load, amplitude)
+            except InputError as error:
+                problems[str(error)] = None
+        if problems:
+            raise InputError("; ".join(problems))
         return True
+
+    def _add(self, key: str, group: str, given: Any, amplitude: str) -> None:
+        """Give a group of the last step something, beside what that has given it before."""
+        groups = self._steps[-1].keys.setdefault(key, {})
+        single = not isinstance(given, dict)
+        components = {"": given} if single else given
+        now = {name: self.with_amplitude(value, amplitude) for name, value in components.items()}
+        known = groups.get(group, {})
+        before = {"": known} if single and group in groups else known
+        if key in _SUMMED:
+            now = _added(before, now, f"{key}s on {group}")
+        groups[group] = now[""] if single else {**before, **now}
 
     def finish(self) -> list[str]:
         """Take the supports over; lines on what is not."""
@@ -141,6 +154,11 @@ class Steps:
             elif self._steps:
                 left += self._support(one)
         left += self._tidy_forces()
+        left += self._pressed_again()
+        left += [
+            f"gravity of step {self._steps[step - 1].name!r} {text}"
+            for step, text in self._weights.partly()
+        ]
         self._renew()
         return left
 
@@ -162,6 +180,24 @@ class Steps:
             if not step.keys["force"]:
                 del step.keys["force"]
         return left
+
+    def _pressed_again(self) -> Iterator[str]:
+        """Lines on faces whose pressure of an earlier step, by another group, decks replace."""
+        earlier: dict[str, set[tuple[int, ...]]] = {}
+        for step in self._steps:
+            if "pressure" in step.new:
+                earlier.clear()
+            here = {
+                group: set(map(tuple, np.sort(self._mesh.facets[group], axis=1).tolist()))
+                for group in step.keys.get("pressure", {})
+            }
+            for (new, faces), (old, before) in product(here.items(), earlier.items()):
+                if new not in earlier and not faces.isdisjoint(before):
+                    yield (
+                        f"that the pressure of step {step.name!r} on {new} replaces what faces had "
+                        f"by {old} in an earlier step: both are there now"
+                    )
+            earlier |= here
 
     def tables(self) -> Iterator[dict[str, object]]:
         """Tables of the steps."""
@@ -231,51 +267,55 @@ class Steps:
 
     def cloads(self, card: Card) -> Iterator[_Load]:
         """Forces of `*CLOAD` on a node, or summed over a set, which spreads them over itself."""
-        for entry, direction, value, *_ in card.fields():
-            if int(direction) > 3:
-                text = f"a moment on {entry.lower()}; faces on a reference point take them"
-                raise InputError(text)
-            nodes = np.unique(self._deck.nodes_of(entry))
-            if not self._turned.isdisjoint(nodes.tolist()):
-                raise InputError(f"{entry.lower()} has a *TRANSFORM; forces along x, y, z are read")
-            total, group = real(value) * len(nodes), self._loaded(entry)
-            self._members[group] = set(nodes.tolist())
-            yield "force", group, {"xyz"[int(direction) - 1]: total}
+        yield from _each(card, self._cload)
+
+    def _cload(self, entry: str, direction: str, value: str = "0", *_: str) -> Iterator[_Load]:
+        if int(direction) > 3:
+            text = f"a moment on {entry.lower()}; faces on a reference point take them"
+            raise InputError(text)
+        nodes = np.unique(self._deck.nodes_of(entry))
+        if not self._turned.isdisjoint(nodes.tolist()):
+            raise InputError(f"{entry.lower()} has a *TRANSFORM; forces along x, y, z are read")
+        total, group = real(value) * len(nodes), self._loaded(entry)
+        self._members[group] = set(nodes.tolist())
+        yield "force", group, {"xyz"[int(direction) - 1]: total}
 
     def temperatures(self, card: Card) -> Iterator[_Load]:
         """Temperatures of bodies of `*TEMPERATURE`."""
-        for body, rise in self._temperatures().prescribed(card):
-            yield "temperature", body, rise
+        for found in self._temperatures().prescribed(card):
+            yield found if isinstance(found, InputError) else ("temperature", *found)
 
     def dloads(self, card: Card) -> Iterator[_Load]:
         """Pressures and gravity of `*DLOAD`."""
-        for name, (value, _) in pressures(card).items():
-            yield "pressure", self._facets(name), real(value)
-        for entry, label, *numbers in card.fields():
-            if label.upper() == "GRAV":
-                size, *direction = (real(v) for v in numbers[:4])
-                for name, share in zip("xyz", direction, strict=False):
-                    if share:
-                        yield "gravity", name, size * share
-            elif not pressed_face(label):
-                raise InputError(f"{label} on {entry.lower()}; P1, P2 ... and GRAV are read")
+        for name, (values, _) in pressures(card).items():
+            try:
+                yield from [("pressure", self._facets(name), real(value)) for value in values]
+            except InputError as error:
+                yield error
+        yield from _each(card, self._dload)
+
+    def _dload(self, entry: str, label: str, *numbers: str) -> Iterator[_Load]:
+        if label.upper() == "GRAV":
+            size, *direction = (real(v or "0") for v in (*numbers, "0", "0", "0")[:4])
+            vector = np.array(direction) / (np.linalg.norm(direction) or 1.0)
+            yield from self._weights.add(len(self._steps), entry, size * vector)
+        elif not pressed_face(label):
+            raise InputError(f"{label} on {entry.lower()}; P1, P2 ... and GRAV are read")
 
     def dsloads(self, card: Card) -> Iterator[_Load]:
         """Pressures and tractions of `*DSLOAD`."""
-        for name, label, value, *along in card.fields():
-            if label.upper() == "P":
-                yield "pressure", self._facets(name), real(value)
-            elif label.upper() == "TRVEC" and len(along) >= 3 and not self.finite:
-                direction = np.array([real(v) for v in along[:3]])
-                traction = real(value) * direction / np.linalg.norm(direction)
-                yield (
-                    "traction",
-                    self._facets(name),
-                    dict(zip("xyz", traction.tolist(), strict=True)),
-                )
-            else:
-                turns = " turns with the surface under NLGEOM" if label.upper() == "TRVEC" else ""
-                raise InputError(f"{label} on {name.lower()}{turns}; P is read, see traction")
+        yield from _each(card, self._dsload)
+
+    def _dsload(self, name: str, label: str, value: str = "0", *along: str) -> Iterator[_Load]:
+        if label.upper() == "P":
+            yield "pressure", self._facets(name), real(value)
+        elif label.upper() == "TRVEC" and len(along) >= 3 and not self.finite:
+            direction = np.array([real(v or "0") for v in along[:3]])
+            traction = real(value) * direction / np.linalg.norm(direction)
+            yield "traction", self._facets(name), dict(zip("xyz", traction.tolist(), strict=True))
+        else:
+            turns = " turns with the surface under NLGEOM" if label.upper() == "TRVEC" else ""
+            raise InputError(f"{label} on {name.lower()}{turns}; P is read, see traction")
 
     def _renew(self) -> None:
         """Release and take away what a step with OP=NEW does not name."""
@@ -292,8 +332,19 @@ class Steps:
                     before[key][group] = given if now is None else {**known, **now}
 
 
-def _added(before: _Given, now: _Given, group: str) -> _Given:
-    """Forces with those that the same step gives a group before: CalculiX adds them.
+def _each(card: Card, read: Callable[..., Iterator[_Load]]) -> Iterator[_Load]:
+    """What the entries of a card give, one by one: one that is not read leaves the others."""
+    for entries in card.rows():
+        try:
+            yield from read(*entries)
+        except InputError as error:
+            yield error
+        except (ValueError, IndexError, TypeError):
+            yield InputError(f"{', '.join(entries)}: data of another kind")
+
+
+def _added(before: _Given, now: _Given, what: str) -> _Given:
+    """Loads with those that the same step gives a group before: CalculiX adds them.
 
     Raises:
         InputError: They follow different amplitudes.
@@ -302,9 +353,8 @@ def _added(before: _Given, now: _Given, group: str) -> _Given:
     for name in before.keys() & now.keys():
         (one, first), (other, second) = (_ramp(given[name]) for given in (before, now))
         if first != second:
-            raise InputError(
-                f"two forces on {group} along {name} in one step, with different amplitudes"
-            )
+            along = f" along {name}" * bool(name)
+            raise InputError(f"two {what}{along} in one step, with different amplitudes")
         total[name] = with_amplitude(one + other, first)
     return total
 
@@ -331,6 +381,8 @@ _LOADS: dict[str, Callable[[Steps, Card], Iterator[_Load]]] = {
     "DSLOAD": Steps.dsloads,
     "TEMPERATURE": Steps.temperatures,
 }
+#: Keys of a step whose values add up where it gives them twice.
+_SUMMED = ("force", "pressure", "traction")
 #: Keys of a step that a keyword with OP=NEW begins anew.
 _RENEWED = {
     "BOUNDARY": {"displacement", "cylindrical"},

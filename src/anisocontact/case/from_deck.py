@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +13,7 @@ from anisocontact.case.deck_contact import DeckContacts, table_lines
 from anisocontact.case.deck_coupling import ReferencePoints, of_ideal
 from anisocontact.case.deck_cyclic import DeckSectors
 from anisocontact.case.deck_materials import Materials, Temperatures
+from anisocontact.case.deck_options import unread_options
 from anisocontact.case.deck_procedures import static_steps
 from anisocontact.case.deck_steps import Steps
 from anisocontact.case.deck_tools import Tools
@@ -101,10 +102,12 @@ class _Case:
         self._reference_points = ReferencePoints(
             self.deck, self.mesh, self._named, self._tools, of_ideal(kinds), self._leave
         )
+        cards = [card for _, card in self.deck.cards]
         self._each(lambda step, card: bool(step) or not self._reference_points.take(card))
         self.deck.cards = self._reference_points.without(self.deck.cards)
         self._each(self._take)
         self.left_out += self._steps.finish()
+        self._tell_unread(cards)
 
     def lines(self, file: str) -> Iterator[str]:
         """Lines of the case file.
@@ -153,6 +156,14 @@ class _Case:
                 self._leave(card, ": its data are of another kind")
         self.deck.cards = kept
 
+    def _tell_unread(self, cards: Iterable[Card]) -> None:
+        """Lines on elements that are no solids, and on options of cards that are taken over."""
+        for kind, count in self.deck.left_out.items():
+            self.left_out.append(f"{count} elements {kind}: they are no solids")
+        for card, why in unread_options(cards):
+            if not any(line.startswith(_of(card) + ":") for line in self.left_out):
+                self._leave(card, why)
+
     def _take(self, step: int, card: Card) -> None:
         if card.name in _READERS and not step:
             _READERS[card.name](self, card)
@@ -200,7 +211,7 @@ class _Case:
             self._ties.append(card)
 
     def _leave(self, card: Card, why: str = "") -> None:
-        self.left_out.append(f"*{card.name} of line {card.line}{why}")
+        self.left_out.append(_of(card) + why)
 
     def _ideal(self, kinds: set[str]) -> dict[str, object]:
         (kind,) = ideals(kinds)
@@ -235,9 +246,16 @@ _NO_TABLE = {
 }
 
 
+def _of(card: Card) -> str:
+    """A card as lines name it."""
+    return f"*{card.name} of line {card.line}"
+
+
 def _amplitude(card: Card) -> dict[str, Any]:
     """Table of a `*AMPLITUDE`; steps that are smooth become one with points between."""
     definition = "".join(card.options.get("DEFINITION", "TABULAR").upper().split())
+    if card.options.get("VALUE", "RELATIVE").upper().startswith("ABS"):
+        raise InputError("VALUE=ABSOLUTE is not read; write shares of what follows it")
     if definition not in ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP"):
         raise InputError(f"DEFINITION={card.options['DEFINITION']} is not read; see [amplitude]")
     for option, instead in _NO_TABLE.items():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,8 @@ from anisocontact.base.given_file import why_no_file
 
 #: How deep files may include others.
 DEPTH = 10
+#: Keywords whose data may stand in a file of their own, `INPUT`.
+_WITH_FILES = ("NODE", "ELEMENT", "NSET", "ELSET")
 
 
 @dataclass(frozen=True)
@@ -115,15 +117,19 @@ def read_cards(path: Path, depth: int = 0) -> list[Card]:
     """
     cards: list[Card] = []
     for card in _own_cards(path):
-        if card.name != "INCLUDE":
+        other = _included(path, card)
+        if other is None:
             cards.append(card)
             continue
         if depth == DEPTH:
             raise InputError(f"line {card.line}: more than {DEPTH} files include each other")
-        other = _included(path, card)
         if what := why_no_file(other):
             raise InputError(f"line {card.line}: the included file {str(other)!r} {what}")
-        cards += read_cards(other, depth + 1)
+        if card.name == "INCLUDE":
+            cards += read_cards(other, depth + 1)
+        else:
+            given = (line for _, line in _lines(other))
+            cards.append(replace(card, data=(*given, *card.data)))
     return cards
 
 
@@ -136,26 +142,37 @@ def included_files(path: Path) -> list[Path]:
     found = [path]
     for file in found:
         try:
-            others = [_included(file, c) for c in _own_cards(file) if c.name == "INCLUDE"]
+            others = [other for c in _own_cards(file) if (other := _included(file, c))]
         except (InputError, OSError):
             continue
         found += [one for one in dict.fromkeys(others) if one not in found and one.is_file()]
     return found[1:]
 
 
-def _included(path: Path, card: Card) -> Path:
-    """The file that a card of a deck includes."""
+def _included(path: Path, card: Card) -> Path | None:
+    """The file that a card of a deck includes, or has its data in; None if there is none."""
+    if card.name != "INCLUDE" and not (card.name in _WITH_FILES and card.options.get("INPUT")):
+        return None
     return path.parent / card.option("INPUT").replace("\\", "/")
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Lines of a file with their numbers, without comments and what is blank."""
+    raw = path.read_bytes()
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:  # names of editors that write one byte a letter stay apart
+        text = raw.decode("latin-1")
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip() and not line.strip().startswith("**"):
+            yield number, line.strip()
 
 
 def _own_cards(path: Path) -> Iterator[Card]:
     """The cards of a file, those that include others as they stand."""
     head: tuple[str, int] | None = None
     data: list[str] = []
-    for number, raw in enumerate(path.read_text("utf-8", errors="replace").splitlines(), 1):
-        line = raw.strip()
-        if not line or line.startswith("**"):
-            continue
+    for number, line in _lines(path):
         if head is not None and not data and head[0].endswith(","):
             head = (head[0] + line, head[1])
         elif line.startswith("*"):

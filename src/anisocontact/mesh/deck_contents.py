@@ -88,6 +88,7 @@ class Deck:
         own: Largest number that nodes and elements beside the parts have; instances begin behind.
         unsorted: Names of node sets whose order counts.
         moved: How many nodes are given once more, at another place, which counts.
+        absent: Sets that others name, in small letters, and that are not there.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -104,6 +105,7 @@ class Deck:
     of_parts: set[str] = field(default_factory=set)
     unsorted: set[str] = field(default_factory=set)
     moved: int = 0
+    absent: set[str] = field(default_factory=set)
     same: dict[str, str] = field(default_factory=dict)
     _held: dict[tuple[int, ...], str] = field(default_factory=dict)
 
@@ -149,7 +151,11 @@ class Deck:
         self._renew(self.node_sets, card.option("NSET"))
         if "UNSORTED" in card.options:
             self.unsorted.add(card.option("NSET").upper())
-        self.add_nodes(card, self._members(card, self.node_sets))
+        found = self._members(card, self.node_sets)
+        if elements := card.options.get("ELSET"):  # all nodes of a set of elements
+            known = [self.elements[n][1] for n in self.members_of(elements) if n in self.elements]
+            found += [node for nodes in known for node in nodes]
+        self.add_nodes(card, found)
 
     def read_element_set(self, card: Card) -> None:
         """Take `*ELSET`."""
@@ -276,6 +282,8 @@ class Deck:
             else:
                 for entry in entries:
                     full = f"{instance}.{entry.upper()}"
+                    if not (entry.isdigit() or full in known or entry.upper() in known):
+                        self.absent.add(entry.lower())
                     found += known[full] if full in known else self._of(entry, known, more)
         return found
 
@@ -295,14 +303,14 @@ def pressed_face(label: str) -> str:
     return f"S{label[1:]}" if label[:1].upper() == "P" and label[1:].isdigit() else ""
 
 
-def pressures(card: Card) -> dict[str, tuple[str, list[tuple[str, str]]]]:
+def pressures(card: Card) -> dict[str, tuple[list[str], list[tuple[str, str]]]]:
     """Faces under the pressures of a `*DLOAD`, as surfaces.
 
     Returns:
-        Name of a surface -> pressure as written, (element or set, face). A set with its face is
-        one; faces of single elements under one pressure are one, named by the line of the card.
+        Name of a surface -> its pressures as written, (element or set, face). A set with its face
+        is one; faces of single elements under one pressure are one, named by the line of the card.
     """
-    found: dict[str, tuple[str, list[tuple[str, str]]]] = {}
+    found: dict[str, tuple[list[str], list[tuple[str, str]]]] = {}
     values: list[str] = []
     for entry, label, *numbers in card.fields():
         face, value = pressed_face(label), (*numbers, "0")[0]
@@ -313,5 +321,9 @@ def pressures(card: Card) -> dict[str, tuple[str, list[tuple[str, str]]]]:
             values += [value] if value not in values else []
             place = values.index(value)
             name = f"PRESSED_{card.line}" + (f"_{place + 1}" if place else "")
-        found.setdefault(name, (value, []))[1].append((entry.upper(), face))
+        given, faces = found.setdefault(name, ([], []))
+        if not (given and entry.isdigit()):
+            given.append(value)
+        if (entry.upper(), face) not in faces:
+            faces.append((entry.upper(), face))
     return found

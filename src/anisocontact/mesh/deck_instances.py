@@ -52,6 +52,7 @@ def begun(card: Card, parts: Mapping[str, Deck]) -> Deck:
         profiles=dict(part.profiles),
         sections=dict(part.sections),
         left_out=dict(part.left_out),
+        absent=set(part.absent),
         cards=list(part.cards),
     )
 
@@ -65,6 +66,8 @@ def place(whole: Deck, card: Card, part: Deck) -> None:
         part: What it has.
     """
     name = card.option("NAME")
+    if name.upper() in whole.offsets:
+        raise InputError(f"there is an instance {name!r} already")
     more = max((*whole.nodes, *whole.elements, whole.own))
     whole.offsets[name.upper()] = more
     moved_to = _placement(card)
@@ -98,6 +101,7 @@ def place(whole: Deck, card: Card, part: Deck) -> None:
         moved_set = f"{name}.{section.elements}".upper()
         whole.sections[name if only else f"{name}_{body}"] = replace(section, elements=moved_set)
     whole.moved += part.moved
+    whole.absent |= part.absent
     for element, count in part.left_out.items():
         whole.left_out[element] = whole.left_out.get(element, 0) + count
     for step, one in part.cards:
@@ -147,5 +151,7 @@ def _placement(card: Card) -> Callable[[Floats], Floats]:
     if len(lines) < 2:
         return lambda points: points + move
     start, end, angle = np.array(lines[1][:3]), np.array(lines[1][3:6]), lines[1][6]
+    if not (end - start).any():
+        raise InputError("its two points of the axis are one")
     turn = Rotation(tuple(end - start), angle_deg=angle, point=tuple(start))
     return lambda points: turn.apply(points + move)

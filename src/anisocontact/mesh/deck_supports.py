@@ -7,6 +7,7 @@ towards the first point, the third normal to the plane with the second.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -309,10 +310,11 @@ def key_of(name: str) -> str:
     """A name as a key of TOML.
 
     Example:
-        >>> key_of("top"), key_of("b.top")
-        ('top', '"b.top"')
+        >>> key_of("top"), key_of("b.top"), key_of("über")
+        ('top', '"b.top"', '"über"')
     """
-    return name if name.replace("_", "").isalnum() else f'"{name}"'
+    plain = name.isascii() and name.replace("_", "").isalnum()
+    return name if plain else json.dumps(name, ensure_ascii=False)
 
 
 def written(value: object) -> str:
@@ -328,4 +330,5 @@ def written(value: object) -> str:
         return f"[{', '.join(map(written, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else f"{value:.10g}"
+    # a string of JSON is one of TOML
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else f"{value:.10g}"

@@ -75,6 +75,8 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
         others = ", ".join(f"{n} {kind}" for kind, n in deck.left_out.items()) or "none at all"
         allowed = ", ".join([*SOLIDS, *IDEAL])
         raise InputError(f"no solid element ({allowed}); there are: {others}")
+    if not deck.nodes:
+        raise InputError("no node: *NODE has no data")
     numbers = np.array(list(deck.nodes), dtype=np.int64)
     order = np.argsort(numbers)
     by_kind: dict[str, list[int]] = {}
@@ -113,6 +115,8 @@ def _odd(deck: Deck, mesh: WholeMesh) -> Iterator[str]:
     """What is legal in a deck and hardly meant."""
     if deck.moved:
         yield f"{deck.moved} nodes are given once more, at another place: the last one counts"
+    if deck.absent and not deck.left_out:  # elements that are not read take their sets along
+        yield f"sets name others that are not there: {', '.join(sorted(deck.absent))}"
     for name, faces in mesh.surfaces.items():
         if not faces:
             yield f"surface {name!r} has no face of a solid: its set of elements is not there"
