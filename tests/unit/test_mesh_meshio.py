@@ -108,6 +108,39 @@ def test_numbers_of_bodies_are_whole(tmp_path, numbers, said):
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("suffix", ["med", "vtu"])
+def test_a_facet_in_two_groups_is_in_both(tmp_path, suffix):
+    """Requirement: groups that overlap have all of their facets, nodes are groups too; a body of
+    two names has one of them, which is said."""
+    upper = np.array([[4, 5, 6, 7]])
+    mesh = meshio.Mesh(POINTS, [("hexahedron", HEXAHEDRA), ("quad", np.vstack([LOWER, upper]))])
+    if suffix == "med":
+        mesh.cell_data = {"cell_tags": [np.array([-1, -2]), np.array([-3, -4])]}
+        mesh.cell_tags = {-1: ["left"], -2: ["right", "all"], -3: ["ends", "low"], -4: ["ends"]}
+        mesh.point_data = {"point_tags": np.array([2, 3, *[0] * 14])}
+        mesh.point_tags = {2: ["edge", "corner"], 3: ["edge"]}
+    else:
+        both, none = np.ones(2, int), np.zeros(2, int)
+        mesh.cell_data = {"group:left": [np.array([1, 0]), none], "group:ends": [none, both]}
+        mesh.cell_data |= {"group:all": [np.array([0, 1]), none]}
+        mesh.cell_data |= {"group:right": [np.array([0, 1]), none]}
+        mesh.cell_data |= {"group:low": [none, np.array([1, 0])]}
+    mesh.write(tmp_path / f"cubes.{suffix}")
+    found = file_arrays(tmp_path / f"cubes.{suffix}", field="")
+    assert {name: len(facets) for name, facets in found.facets.items()} == {
+        "left.ends": 2,
+        "left.low": 1,
+    }
+    assert list(found.bodies) == ["left", "right"]
+    assert "1 cells in all and right: they are of the body 'right'" in found.notes
+    if suffix == "med":
+        assert {name: len(nodes) for name, nodes in found.nodes.items()} == {
+            "left.edge": 2,
+            "left.corner": 1,
+        }
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_exodus_with_sets_of_nodes(tmp_path):
     mesh = meshio.Mesh(
         POINTS, [("hexahedron", HEXAHEDRA)], point_sets={"held": np.array([0, 1, 2, 3])}

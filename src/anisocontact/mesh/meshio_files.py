@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.mesh import exodus
 from anisocontact.mesh.exodus import read_exodus
@@ -79,18 +79,19 @@ def read_by_meshio(path: Path) -> WholeMesh:
     for block, labels in zip(given.cells, names, strict=True):
         nodes = np.asarray(block.data, dtype=np.int64)
         if block.type in solids:
-            bodies = labels if any(labels) else ["body"] * len(nodes)
-            mesh.add_cells(solids[block.type], nodes, bodies)
+            bodies = [label[-1] if label else "" for label in labels]
+            mesh.add_cells(
+                solids[block.type], nodes, bodies if any(bodies) else ["body"] * len(nodes)
+            )
+            mesh.notes = (*mesh.notes, *_of_several(labels))
         elif block.type in LOWER and block.type not in facets:
-            for name in dict.fromkeys(label for label in labels if label):
-                own = nodes[[label == name for label in labels]]
+            for name, own in _members(labels).items():
                 before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
-                mesh.node_sets[name] = np.union1d(before, own)
+                mesh.node_sets[name] = np.union1d(before, nodes[own])
         elif block.type in facets:
             corners = nodes[:, : facets[block.type]]
-            for name in dict.fromkeys(label for label in labels if label):
-                own = corners[[label == name for label in labels]]
-                mesh.surfaces.setdefault(name, []).append(own)
+            for name, own in _members(labels).items():
+                mesh.surfaces.setdefault(name, []).append(corners[own])
     for name, parts in getattr(given, "sides", {}).items():
         mesh.surfaces.setdefault(_plain(name), []).extend(parts)
     if not mesh.cells:
@@ -101,11 +102,18 @@ def read_by_meshio(path: Path) -> WholeMesh:
         raise InputError(text)
     if all(set(labels) == {"body"} for labels in mesh.bodies):
         mesh.notes = (*mesh.notes, *_unread(given, solids))
-    for name, found in given.point_sets.items():
-        nodes = np.asarray(found, dtype=np.int64).ravel()
+    for name, held in (*given.point_sets.items(), *_of_families(given)):
         before = mesh.node_sets.get(_plain(name), np.zeros(0, dtype=np.int64))
+        nodes = np.asarray(held, dtype=np.int64).ravel()
         mesh.node_sets[_plain(name)] = np.union1d(before, nodes)
     return mesh
+
+
+def _of_families(given: Any) -> Iterator[tuple[str, Ints]]:
+    """Groups of nodes of MED, which keeps for each node the number of a family of them."""
+    for number, names in getattr(given, "point_tags", {}).items():
+        held = np.flatnonzero(np.asarray(given.point_data["point_tags"]) == number)
+        yield from ((name, held) for name in names)
 
 
 def _dimension(given: Any, points: Floats) -> int:
@@ -149,26 +157,46 @@ def _read(path: Path) -> Any:
         raise InputError(f"meshio cannot read it: {text}") from None
 
 
-def _names(mesh: Any, dim: int) -> list[list[str]]:
-    """Group of each cell by its name, block by block; empty where it is in none."""
-    found = [[""] * len(block.data) for block in mesh.cells]
-    for labels, numbers in zip(found, _tags(mesh, dim), strict=True):
-        labels[:] = numbers or labels
+def _names(mesh: Any, dim: int) -> list[list[tuple[str, ...]]]:
+    """Groups of each cell by their names, block by block; of a body the last one counts.
+
+    Sets take the place of numbers.
+    """
+    found: list[list[tuple[str, ...]]] = [[()] * len(block.data) for block in mesh.cells]
     for name, parts in mesh.cell_data.items():
         if name.startswith(GROUP):
             for labels, part in zip(found, parts, strict=True):
                 for k in np.flatnonzero(np.asarray(part)):
-                    labels[k] = name.removeprefix(GROUP)
+                    labels[k] += (name.removeprefix(GROUP),)
     for name, parts in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
             continue
         for labels, part in zip(found, parts, strict=True):
             for k in np.asarray(part if part is not None else [], dtype=np.int64):
-                labels[k] = _plain(name)
+                labels[k] += (_plain(name),)
+    return [
+        [label or number for label, number in zip(labels, numbers, strict=True)]
+        for labels, numbers in zip(found, _tags(mesh, dim), strict=True)
+    ]
+
+
+def _members(labels: Sequence[tuple[str, ...]]) -> dict[str, list[int]]:
+    """Cells of each group."""
+    found: dict[str, list[int]] = {}
+    for k, names in enumerate(labels):
+        for name in dict.fromkeys(names):
+            found.setdefault(name, []).append(k)
     return found
 
 
-def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
+def _of_several(labels: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    """Lines on cells of bodies that are in several groups."""
+    for names in dict.fromkeys(label for label in labels if len(label) > 1):
+        count, (*others, own) = labels.count(names), names
+        yield f"{count} cells in {', '.join(others)} and {own}: they are of the body {own!r}"
+
+
+def _tags(mesh: Any, of_bodies: int) -> Iterator[list[tuple[str, ...]]]:
     """Names of the numbers that a format gives its cells, block by block; empty without numbers."""
     key = next((key for key in TAGS if key in mesh.cell_data), None)
     known = {
@@ -176,22 +204,25 @@ def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
         for name, value in mesh.field_data.items()
         if np.size(value) == 2
     }
-    of_med = {
-        number: _plain(names[0])
+    of_med = {  # the first name of cells is that of their body
+        number: tuple(map(_plain, reversed(names)))
         for number, names in getattr(mesh, "cell_tags", {}).items()
         if names
     }
     for k, block in enumerate(mesh.cells):
         if key is None:
-            yield []
+            yield [()] * len(block.data)
             continue
         dim = 3 if block.type in SOLIDS else LOWER.get(block.type, 2)
         word = ("edge", "surface", "body")[max(dim - of_bodies, -2) + 2]
         numbers = _whole(mesh.cell_data[key][k], key)
-        yield [
-            of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == of_bodies else "")
-            for n in numbers
-        ]
+        names = {
+            n: of_med.get(n)
+            or tuple(one for one in [known.get((dim, n))] if one)
+            or ((f"{word}{n}",) if n or dim == of_bodies else ())
+            for n in set(numbers)
+        }
+        yield [names[n] for n in numbers]
 
 
 def _whole(given: Any, name: str) -> list[int]:

@@ -152,6 +152,25 @@ def test_rigid_bodies_are_where_they_were(tmp_path):
     assert found[0][2] > 1.0
 
 
+@pytest.mark.parametrize("free", [False, True])
+def test_bodies_are_free_as_they_were(free):
+    """Requirement: what later steps free, or free no more, is named with its body."""
+
+    def solver(free):
+        model, *_ = _contact(PARTS)
+        ball = make_surface("sphere", centre=(0.5, 0.5, -9), radius=9.0)
+        body = RigidBody("ball", (0.5, 0.5, -9), free=free)
+        law = Friction(coefficients=0.3)
+        slave = Contact(model, "pad.bottom", MovingSurface(ball, body), law)
+        step = Step("press", 1, {"pad.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+        material = make_material("linear-elastic", E=100.0, nu=0.3)
+        return Solver(Problem(model, {"pad": material}, [slave]), [step])
+
+    was, is_now = ("held in all steps", "free in a step")[:: -1 if free else 1]
+    with pytest.raises(InputError, match=f"^rigid.ball: {is_now}, {was} of the run"):
+        solver(not free).restore(solver(free).persistent())
+
+
 def test_cells_are_those_of_the_state(tmp_path):
     """Requirement: nodes at the same places with other cells between them are another mesh."""
     path = tmp_path / "state.npz"

@@ -96,11 +96,22 @@ def check_described(
         InputError: Names the first entry that is not the same.
     """
     before, given = json.loads(bytes(kept)), json.loads(json.dumps(now))
+    _check_free(before.get("rigid", []), given.get("rigid", []))
     for name, count in (ends or {}).items():
         before[name], given[name] = before[name][:count], given[name][:count]
     if found := first_difference(before, given, NEAR):
         text = f"{found.new} given, the state is that of a problem with {found.old}"
         raise InputError(text, found.place)
+
+
+def _check_free(kept: Sequence[Mapping[str, Any]], now: Sequence[Mapping[str, Any]]) -> None:
+    """Refuse bodies that later steps free, or do not free any more: a state has their unknowns."""
+    for old, new in zip(kept, now, strict=False):
+        if old["name"] == new["name"] and old.get("free") != new["free"]:
+            how = ("free in a step", "held in all steps")
+            is_now, was = how if new["free"] else reversed(how)
+            text = f"{is_now}, {was} of the run that is to go on: begin anew"
+            raise InputError(text, f"rigid.{new['name']}")
 
 
 def check_positions(kept: Floats, now: Floats, what: str, size: float) -> None:
