@@ -31,7 +31,8 @@ class Until:
 
     Args:
         contact: Name of a contact, or its slave if that has but one: its event, or the force on it.
-        reaction: Facet group with supports: their force on the body.
+        reaction: Facet group with supports, elastic ones included, or name of a spring: the force
+            on the body, as `reactions` of the results have it.
         displacement: Facet group, or points and edges with a name: their mean displacement.
         measure: A function of the problem and of whether its state, which `problem.u` has, is a
             trial in equilibrium or the accepted one; it returns a number, the same on all

@@ -27,7 +27,9 @@ class UntilSection(Section):
         "the force on it that is reached",
     )
     reaction: str | None = Field(
-        None, description='facet group with supports, "body.group": their force that is reached'
+        None,
+        description='facet group with supports, elastic ones included, "body.group", or a spring: '
+        "its force on the body that is reached",
     )
     displacement: str | None = Field(
         None,

@@ -8,6 +8,7 @@ import warnings
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly
@@ -75,17 +76,17 @@ class ReportedSystem(AssembledSystem):
         """Middles of the cells of this rank that the last evaluation inverted, (n, 3)."""
         return self._bodies.inverted()
 
-    def reactions(self) -> dict[str, Floats]:
+    def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
 
-        Unknowns on an edge that several groups prescribe count for the first of them.
+        Unknowns on an edge that several groups prescribe count for the first of them. Collective.
+
+        Args:
+            x: All unknowns of the trial in equilibrium; the accepted state if not given.
         """
-        source = self.reduction
-        if self.guides:
-            source.recover()  # their forces need all displacements on them
-            source = self.whole
-        sums = source.reactions()
-        for name, force in self.attached.reactions(self._bodies.nodal).items():
+        sums = self.reduction.reactions(x)
+        nodal = self._bodies.nodal if x is None else self.reduction.nodal(x)
+        for name, force in self.attached.reactions(nodal, trial=x is not None).items():
             sums[name] = sums.get(name, 0.0) + force
         return sums
 

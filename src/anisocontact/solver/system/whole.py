@@ -74,12 +74,9 @@ class Whole:
             contact_force: Forces of contact on them, force.
             load: Loads on them, force.
         """
-        assembly, owned = self._parts.assembly, self._parts.layout.owned
-        self._accepted.x.array[:owned] = u
+        self._accepted.x.array[: self._parts.layout.owned] = u
         trial = self._bodies.take(self._accepted.x)
-        outside = -(assembly.bodies.inner(trial.nodal) + contact_force)
-        tied = assembly.constraints.tied
-        self._accepted.take(tied(outside), tied(load))
+        self._accepted.take(*self._from_outside(trial.nodal, contact_force, load))
 
     def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """As of `Reduction`."""
@@ -89,7 +86,30 @@ class Whole:
         else:
             balance = self._evaluation.at(x)
             force = balance.outside - balance.load
-        across, rest = self._parts.guides.forces(force)
+        return self._reactions(force)
+
+    def reactions_at(self, nodal: Floats, contact_force: Floats, load: Floats) -> dict[str, Floats]:
+        """The same where displacements and forces are known without an evaluation.
+
+        Args:
+            nodal: Displacement of the local nodes, (nodes, 3), length.
+            contact_force: Forces of contact on the displacements this rank owns, force.
+            load: Loads on them, force.
+        """
+        outside, load = self._from_outside(nodal, contact_force, load)
+        return self._reactions(outside - load)
+
+    def _from_outside(
+        self, nodal: Floats, contact_force: Floats, load: Floats
+    ) -> tuple[Floats, Floats]:
+        """All forces but those of contact, and of these the loads, as constraints hand them on."""
+        assembly = self._parts.assembly
+        tied = assembly.constraints.tied
+        return tied(-(assembly.bodies.inner(nodal) + contact_force)), tied(load)
+
+    def _reactions(self, supporting: Floats) -> dict[str, Floats]:
+        """What all supports carry, by facet group."""
+        across, rest = self._parts.guides.forces(supporting)
         sums = self._parts.supports.reactions(rest)
         for name, force in across.items():
             sums[name] = sums.get(name, 0.0) + force

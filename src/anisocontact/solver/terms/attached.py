@@ -37,8 +37,13 @@ class Attached(Term):
     name: str
     nodes: Locals
 
-    def reaction(self, u: Floats) -> Floats:
-        """Force on the body in the accepted state `u`, over all ranks, (3,)."""
+    def reaction(self, u: Floats, trial: bool = False) -> Floats:
+        """Force on the body, over all ranks, (3,), force; collective.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            trial: Whether this is a trial at the load factor of now; else the accepted state.
+        """
         raise NotImplementedError
 
     def way(self) -> float:
@@ -192,7 +197,7 @@ class _SupportTerm(Attached):
         return {"springs": float(self._comm.allreduce(self._quadrature.areas @ density))}
 
     @override
-    def reaction(self, u: Floats) -> Floats:
+    def reaction(self, u: Floats, trial: bool = False) -> Floats:
         local = self._quadrature.areas @ self._traction(u)
         return np.asarray(self._comm.allreduce(local))
 
@@ -253,8 +258,8 @@ class _SpringTerm(Attached):
         return {"springs": -0.5 * float(self._force(u, anchor) @ self._stretch(u, anchor))}
 
     @override
-    def reaction(self, u: Floats) -> Floats:
-        return self._force(u, self._accepted[0])
+    def reaction(self, u: Floats, trial: bool = False) -> Floats:
+        return self._force(u, self._anchor if trial else self._accepted[0])
 
     @override
     def way(self) -> float:

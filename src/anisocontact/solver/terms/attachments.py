@@ -67,9 +67,14 @@ class Attachments(TermGroup):
         """Local nodes of the bodies that they act on."""
         return np.concatenate([np.zeros(0, dtype=np.int32), *(one.nodes for one in self._all)])
 
-    def reactions(self, u: Floats) -> dict[str, Floats]:
-        """Force of each on the bodies, by facet group of a support or name of a spring, (3,)."""
-        return {one.name: one.reaction(u) for one in self._all}
+    def reactions(self, u: Floats, trial: bool) -> dict[str, Floats]:
+        """Force of each on the bodies, by facet group of a support or name of a spring, (3,).
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            trial: Whether this is a trial at the load factor of now; else the accepted state.
+        """
+        return {one.name: one.reaction(u, trial) for one in self._all}
 
     def way(self) -> float:
         """Farthest that one of them can carry what it holds from the accepted state on, length.

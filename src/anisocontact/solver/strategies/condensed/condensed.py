@@ -238,6 +238,14 @@ class Condensed:
 
     def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """As of `Reduction`."""
+        whole = self._problem.whole
+        if self._problem.guides and x is not None:  # their forces need all displacements on them
+            u = self.displacement(x)
+            return whole.reactions_at(u, self.system.raw_forces, self._trial_load)
+        if self._problem.guides:
+            self.recover()
+        if x is None and not self._stale:  # of supports, too, that have begun since
+            return whole.reactions()
         state = self._state if x is None else self._trial(x)
         assert state is not None
         outside = self.system.patterns.outside(state)
