@@ -363,6 +363,7 @@ class Problem(ComposedSystem, Uncopied):
         nodal, common = self._restart_state.persistent()
         nodal["position"] = self.model.positions[: self.layout.owned // 3].copy()
         nodal |= {f"{PENDING}{name}": values for name, values in pending.items()}
+        nodal |= self.assembly.bodies.accepted_at_nodes()
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, self.assembly.terms.histories(), common)
 
@@ -388,6 +389,7 @@ class Problem(ComposedSystem, Uncopied):
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
         self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)
+        self.assembly.bodies.restore_at_nodes(kept.nodal)
         self.whole.take_pending(under(PENDING, kept.nodal))
 
     def accepted(self) -> Vec:

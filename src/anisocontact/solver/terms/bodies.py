@@ -19,6 +19,9 @@ from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
+#: Name of the forces that are kept.
+_INNER = "inner_force"
+
 #: What forces inside bodies come from.
 type Bulk = LinearBulk | NonlinearBulk | FormBulk
 
@@ -86,6 +89,17 @@ class Bodies(Term):
         A material that knows time would go on from there by an increment if it was asked again.
         """
         return self.inner(u) if self._accepted is None else self._accepted
+
+    def accepted_at_nodes(self) -> Arrays:
+        """Forces of the accepted state at the nodes this rank owns, where no evaluation has them.
+
+        What a material does in an increment cannot be asked again from its end.
+        """
+        return {} if self._accepted is None else {_INNER: self._accepted.reshape(-1, 3).copy()}
+
+    def restore_at_nodes(self, kept: Arrays) -> None:
+        """Go on from what `accepted_at_nodes` gave, among other things."""
+        self._accepted = kept[_INNER].reshape(-1).copy() if _INNER in kept else None
 
     def missed(self) -> Floats:
         """What forces have changed by since the last tangent, beyond what it says.
