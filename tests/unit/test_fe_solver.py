@@ -65,7 +65,7 @@ def test_numbers_of_numpy_are_numbers(fe, number):
     Arithmetic of NumPy with a number in single precision stays in single precision: a third of
     the way would be off in the eighth digit. Exact, as -1/4 and -1 are.
     """
-    from anisocontact.base.course import history_of
+    from anisocontact.base.load_curve import history_of
     from anisocontact.solver import Step
 
     given = Step("a", 1, {"block.top": {"z": number}}).displacement["block.top"]["z"]

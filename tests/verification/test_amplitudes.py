@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from anisocontact.base.amplitudes import make_amplitude
-from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.errors import InputError
+from anisocontact.base.load_curve import LoadCurve, load_curves
 from anisocontact.base.paths import make_path
 
 NOTHING = {"x": 0.0, "y": 0.0, "z": 0.0}

@@ -21,6 +21,7 @@ MOVED = {
     "anisocontact.adhesion_domain": "anisocontact.laws",
     "anisocontact.arrays": "anisocontact.base.arrays",
     "anisocontact.augmentation": "anisocontact.interface",
+    "anisocontact.base.course": "anisocontact.base.load_curve",
     "anisocontact.errors": "anisocontact.base.errors",
     "anisocontact.facet_blocks": "anisocontact.surfaces.facet_blocks",
     "anisocontact.facets": "anisocontact.surfaces",

@@ -103,7 +103,7 @@ def renamed(module: str, name: str) -> Any:
         >>> import warnings
         >>> with warnings.catch_warnings(record=True) as told:
         ...     warnings.simplefilter("always")
-        ...     found = renamed("anisocontact.base.course", "Course")
+        ...     found = renamed("anisocontact.base.load_curve", "Course")
         >>> found.__name__, str(told[0].message)
         ('LoadCurve', 'Course is now LoadCurve')
     """

@@ -15,9 +15,9 @@ from anisocontact.base.limits import Limits
 from anisocontact.bulk import Material, materials
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
-from anisocontact.case.courses import CaseCourses, cut_paths, idle_amplitudes
 from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
+from anisocontact.case.load_curves import CaseLoadCurves, cut_paths, idle_amplitudes
 from anisocontact.case.material_file import material_of
 from anisocontact.case.mesh import arrays_of, name_nodes
 from anisocontact.case.model import MORTAR, Case
@@ -148,7 +148,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
     }
     bodies = _rigid_bodies(case)
     contacts = _contacts(case, model, materials, bodies, own)
-    steps = steps_of(case, model, CaseCourses(case, file.resolve, python))
+    steps = steps_of(case, model, CaseLoadCurves(case, file.resolve, python))
     check_options(case.solver.options, case.solver.strategy)
     with _faces_by_key(case):
         problem = Problem(

@@ -8,7 +8,7 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.base.words import meant
 from anisocontact.case import law_file, objects
-from anisocontact.case.courses import check_courses
+from anisocontact.case.load_curves import check_load_curves
 from anisocontact.case.model import (
     AUGMENTED,
     MORTAR,
@@ -52,7 +52,7 @@ def check(case: Case) -> Iterator[InputError]:
     yield from _held(case)
     yield from _points_and_faces(case)
     yield from _steps(case)
-    yield from check_courses(case)
+    yield from check_load_curves(case)
     yield from check_units(case.units)
     end = sum(step.duration for step in case.step)
     yield from check_output(case.output, [step.name for step in case.step], end)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from anisocontact.base.errors import InputError
-from anisocontact.case.courses import prescribed_axes
+from anisocontact.case.load_curves import prescribed_axes
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.section import near
 

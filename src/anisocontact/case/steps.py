@@ -7,7 +7,7 @@ from typing import Any
 
 from anisocontact.base.errors import within
 from anisocontact.case.amplitudes import times
-from anisocontact.case.courses import CaseCourses
+from anisocontact.case.load_curves import CaseLoadCurves
 from anisocontact.case.model import Case, StepSection
 from anisocontact.mesh import Model
 from anisocontact.solver import Cylindrical, Step, Turn, Until
@@ -16,13 +16,13 @@ from anisocontact.solver import Cylindrical, Step, Turn, Until
 ON_NODES = ("displacement", "cylindrical", "rotation", "force")
 
 
-def steps_of(case: Case, model: Model, schedule: CaseCourses) -> list[Step]:
+def steps_of(case: Case, model: Model, curves: CaseLoadCurves) -> list[Step]:
     """The steps, with what each prescribes over its time.
 
     Args:
         case: The case.
         model: Its mesh, with the groups that steps name.
-        schedule: Amplitudes and paths of the case.
+        curves: Amplitudes and paths of the case.
 
     Raises:
         InputError: A group is unknown, or a step cannot be.
@@ -36,7 +36,7 @@ def steps_of(case: Case, model: Model, schedule: CaseCourses) -> list[Step]:
         with within(place):
             event, probes = section.until, case.output.probe
             until = None if event is None else event.made(section.name, probes)
-            steps.append(_step(section, schedule, begun, _weights(case, section), until))
+            steps.append(_step(section, curves, begun, _weights(case, section), until))
         begun += section.duration
     return steps
 
@@ -52,26 +52,28 @@ def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
     }
 
 
-def _cylinders(section: StepSection, schedule: CaseCourses, begun: float) -> dict[str, Cylindrical]:
+def _cylinders(
+    section: StepSection, curves: CaseLoadCurves, begun: float
+) -> dict[str, Cylindrical]:
     """Displacements prescribed along cylindrical directions."""
     found = {}
     for name, given in section.cylindrical.items():
         with within(f"cylindrical.{name}"):
-            values = schedule.values(given.given(), None, begun)
+            values = curves.values(given.given(), None, begun)
             found[name] = Cylindrical(values, given.axis, given.point)
     return found
 
 
 def _step(
     section: StepSection,
-    schedule: CaseCourses,
+    curves: CaseLoadCurves,
     begun: float,
     weights: Mapping[str, Any],
     until: Until | None,
 ) -> Step:
     def prescribed(kind: str) -> dict[str, dict[str, Any]]:
         return {
-            name: schedule.values(given.given(), getattr(given, "path", None), begun)
+            name: curves.values(given.given(), getattr(given, "path", None), begun)
             for name, given in getattr(section, kind).items()
         }
 
@@ -79,19 +81,19 @@ def _step(
     for name, table in section.rotation.items():
         given = dict(table)
         if table.amplitude is not None:
-            given["amplitude"] = schedule.amplitude(table.amplitude, begun)
+            given["amplitude"] = curves.amplitude(table.amplitude, begun)
         with within(f"rotation.{name}"):
             turns[name] = Turn(**given)
     kinds = ("displacement", "motion", "load", "traction", "force", "anchor")
-    weights = {name: schedule.values(given, None, begun) for name, given in weights.items()}
+    weights = {name: curves.values(given, None, begun) for name, given in weights.items()}
     return Step(
         section.name,
         section.increments,
         duration=section.duration,
-        pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
-        temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
+        pressure={group: curves.value(v, begun) for group, v in section.pressure.items()},
+        temperature={body: curves.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
-        cylindrical=_cylinders(section, schedule, begun),
+        cylindrical=_cylinders(section, curves, begun),
         body_force=prescribed("body_force") | weights,
         until=until,
         **{kind: prescribed(kind) for kind in kinds},

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import LoadCurve, PrescribedValue, check_prescribed, history_of
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.load_curve import LoadCurve, PrescribedValue, check_prescribed, history_of
 from anisocontact.base.one_history import OneHistory
 from anisocontact.base.parameters import OfDegrees
 from anisocontact.base.typed import is_number, typed

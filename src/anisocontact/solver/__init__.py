@@ -8,8 +8,8 @@ from anisocontact.base.amplitudes import (
     make_amplitude,
     register_amplitude,
 )
-from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.limits import Limits
+from anisocontact.base.load_curve import LoadCurve, load_curves
 from anisocontact.base.paths import Path, make_path, paths, register_path
 from anisocontact.base.renamed import renamed
 from anisocontact.base.until import Until

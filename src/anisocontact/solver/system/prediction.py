@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import history_of
+from anisocontact.base.load_curve import history_of
 from anisocontact.contact import Contact
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step

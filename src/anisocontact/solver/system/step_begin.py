@@ -19,7 +19,7 @@ from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, alon
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.sector_contacts import halved_nodes
-from anisocontact.solver.terms.step import AXES, Step, check_courses
+from anisocontact.solver.terms.step import AXES, Step, check_load_curves
 from anisocontact.solver.terms.supports import Supports
 
 
@@ -105,10 +105,10 @@ def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
         What is doubtful, a line each.
 
     Raises:
-        InputError: See `check_courses`, `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
+        InputError: See `check_load_curves`, `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
             `check_lost_loads`.
     """
-    turned, doubtful = False, check_courses(steps)
+    turned, doubtful = False, check_load_curves(steps)
     known = np.ones(len(parts.model.positions), dtype=bool)  # nodes whose place is
     for step, supports, guides, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)

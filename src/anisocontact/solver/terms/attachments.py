@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Locals
-from anisocontact.base.course import history_of
 from anisocontact.base.errors import InputError
+from anisocontact.base.load_curve import history_of
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.step import AXES, Step

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.course import Held, TimeHistory, history_of
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.load_curve import Held, TimeHistory, history_of
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
 from anisocontact.solver.terms.sectors import Sectors

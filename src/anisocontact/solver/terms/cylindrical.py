@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import PrescribedValue, check_prescribed
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.load_curve import PrescribedValue, check_prescribed
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import check_vector
 

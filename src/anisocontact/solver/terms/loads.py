@@ -9,8 +9,8 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.compiled_forms import compiled
-from anisocontact.base.course import PrescribedValue
 from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.load_curve import PrescribedValue
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model

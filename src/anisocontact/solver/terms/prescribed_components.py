@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import PrescribedValue, TimeHistory, history_of
+from anisocontact.base.load_curve import PrescribedValue, TimeHistory, history_of
 
 
 class PrescribedComponents:
@@ -19,7 +19,7 @@ class PrescribedComponents:
         end: Values at its end, (size,).
 
     Example:
-        >>> from anisocontact.base.course import LoadCurve
+        >>> from anisocontact.base.load_curve import LoadCurve
         >>> force = PrescribedComponents(2)
         >>> force.begin(1.0)
         >>> force.prescribe(0, 4.0)

@@ -7,15 +7,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from anisocontact.base.course import (
+from anisocontact.base.errors import InputError, within
+from anisocontact.base.limits import MOST_INCREMENTS
+from anisocontact.base.load_curve import (
     LoadCurve,
     PrescribedValue,
     check_prescribed,
     history_of,
-    way_cut_off,
+    path_cut_off,
 )
-from anisocontact.base.errors import InputError, within
-from anisocontact.base.limits import MOST_INCREMENTS
 from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
@@ -204,7 +204,7 @@ class Step:
         return InputError(message, f"step {self.name!r}.{where}")
 
 
-def check_courses(steps: Sequence[Step]) -> list[str]:
+def check_load_curves(steps: Sequence[Step]) -> list[str]:
     """Refuse load curves that do not begin where the step before ends.
 
     Args:
@@ -260,12 +260,12 @@ def _followed(
 def _shortened(step: Step) -> list[str]:
     """Warnings of paths whose corners and arcs the increments of a step cut off."""
     along: dict[tuple[str, str], list[LoadCurve]] = {}
-    for (kind, name, axis), course in step.load_curves().items():
+    for (kind, name, axis), curve in step.load_curves().items():
         if axis in AXES and kind not in _FORCES:
-            along.setdefault((kind, name), []).append(course)
+            along.setdefault((kind, name), []).append(curve)
     said = []
-    for (kind, name), courses in along.items():
-        lost = way_cut_off(courses, step.duration, step.increments) if len(courses) > 1 else 0.0
+    for (kind, name), curves in along.items():
+        lost = path_cut_off(curves, step.duration, step.increments) if len(curves) > 1 else 0.0
         if lost > _CUT_OFF:
             said.append(
                 f"step {step.name!r}.{kind}.{name}: {step.increments} increments cut off "

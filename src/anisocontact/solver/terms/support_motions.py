@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import TimeHistory
+from anisocontact.base.load_curve import TimeHistory
 from anisocontact.solver.terms.turn import Turn
 
 #: Places along a step at which what follows an amplitude is compared with what else is prescribed.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints
-from anisocontact.base.course import Held, history_of
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
+from anisocontact.base.load_curve import Held, history_of
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.free_modes import Supported, along_axes
 from anisocontact.solver.terms.step import AXES, Step

@@ -9,8 +9,8 @@ import numpy as np
 
 from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.array_types import Floats
-from anisocontact.base.course import LoadCurve
 from anisocontact.base.errors import InputError
+from anisocontact.base.load_curve import LoadCurve
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import Rotation, check_vector
 

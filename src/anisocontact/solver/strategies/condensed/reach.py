@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
-from anisocontact.base.course import history_of
+from anisocontact.base.load_curve import history_of
 from anisocontact.contact import Contact
 from anisocontact.contact.remote_nodes import all_marked, marked_nodes, node_count
 from anisocontact.mesh import Model

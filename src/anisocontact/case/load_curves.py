@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact.base.amplitudes import Amplitude, make_amplitude
-from anisocontact.base.course import LoadCurve, load_curves
 from anisocontact.base.errors import InputError, within
+from anisocontact.base.load_curve import LoadCurve, load_curves
 from anisocontact.base.paths import make_path
 from anisocontact.case.amplitudes import FunctionTable, Scheduled
 from anisocontact.case.law_file import module_at
@@ -25,7 +25,7 @@ _LATE = 1e-9
 _WITH_PATHS = ("displacement", "motion", "anchor")
 
 
-class CaseCourses:
+class CaseLoadCurves:
     """Amplitudes and paths of a case.
 
     Args:
@@ -97,7 +97,7 @@ def prescribed_axes(case: Case, path: str | None) -> list[str]:
         return []
 
 
-def check_courses(case: Case) -> Iterator[InputError]:
+def check_load_curves(case: Case) -> Iterator[InputError]:
     """Amplitudes and paths that are wrong, or that steps name and there are not."""
     axes_of: dict[str, list[str]] = {}
     for name, table in case.amplitude.items():

@@ -319,20 +319,20 @@ def load_curves(path: Path) -> dict[str, LoadCurve]:
     return {axis: LoadCurve(way, relative=True) for axis, way in path.components().items()}
 
 
-def way_cut_off(courses: Sequence[LoadCurve], duration: float, increments: int) -> float:
+def path_cut_off(curves: Sequence[LoadCurve], duration: float, increments: int) -> float:
     """Share of the way along several axes that straight increments cut off, 0 to 1.
 
     Args:
-        courses: What is prescribed along each axis.
+        curves: What is prescribed along each axis.
         duration: Time the step takes.
         increments: How many it has.
 
     Example:
         >>> from anisocontact.base.paths import make_path
         >>> circle = load_curves(make_path("circle", radius=2.0)).values()
-        >>> round(way_cut_off(list(circle), 1.0, 4), 2)  # 1 - 4 sqrt(2) / (2 pi)
+        >>> round(path_cut_off(list(circle), 1.0, 4), 2)  # 1 - 4 sqrt(2) / (2 pi)
         0.1
     """
-    both = zip(*(course._seen(duration, increments) for course in courses), strict=True)
+    both = zip(*(curve._seen(duration, increments) for curve in curves), strict=True)
     way, seen = (np.linalg.norm(np.diff(axes, axis=1), axis=0).sum() for axes in both)
     return float(1.0 - seen / way) if way > 0.0 else 0.0
