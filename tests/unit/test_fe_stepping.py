@@ -21,7 +21,7 @@ from anisocontact.solver.stepping.attempts import _reason
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.status_watch import StatusWatch
-from anisocontact.solver.stepping.turned import TurnWatch
+from anisocontact.solver.stepping.turn_watch import TurnWatch
 from anisocontact.solver.system.culprit import Culprit
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}

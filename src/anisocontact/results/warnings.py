@@ -23,7 +23,7 @@ from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.increment_warnings import FAR, UNBALANCED
-from anisocontact.solver.stepping.turned import MARGIN
+from anisocontact.solver.stepping.turn_watch import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, STRAINED, WARNED
 

@@ -26,7 +26,7 @@ from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import Overload
 from anisocontact.solver.stepping.status_watch import StatusWatch
-from anisocontact.solver.stepping.turned import TurnWatch
+from anisocontact.solver.stepping.turn_watch import TurnWatch
 from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.culprit import Culprit

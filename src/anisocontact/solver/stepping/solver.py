@@ -34,7 +34,7 @@ from anisocontact.solver.stepping.rolling_watch import RollingWatch
 from anisocontact.solver.stepping.run_position import RunPosition, fraction
 from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run, size_of
 from anisocontact.solver.stepping.status_watch import StatusWatch
-from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
+from anisocontact.solver.stepping.turn_watch import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.stepping.turned_faces import TurnedFaceWatch
 from anisocontact.solver.strategies.choice import choose
 from anisocontact.solver.strategies.database import Database, OptionValue

@@ -12,12 +12,15 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.rigid import RigidBody
-from anisocontact.solver.terms.drive import Drive, check_known
 from anisocontact.solver.terms.face_loads import add_face_loads
 from anisocontact.solver.terms.face_on_body import FaceOnBody
 from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.rigid_boundary_conditions import (
+    RigidBoundaryConditions,
+    check_known,
+)
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 from anisocontact.solver.terms.unsupported_rigid_body import check_supported, overturned
@@ -67,7 +70,7 @@ class RigidBodies(Term):
         self.contacts = {b: [one for one in on_bodies if one.body is b] for b in self.bodies}
         self.coupled = {b: [face for face in coupled if face.body is b] for b in self.bodies}
         self._comm, self._key = comm, object()
-        self._drives = {body: Drive(body) for body in self.bodies}
+        self._bcs = {body: RigidBoundaryConditions(body) for body in self.bodies}
         self._scales = {body: self._scale(body) for body in self.bodies}
         zero = np.zeros((len(self.bodies), 6))
         self._outside, self._accepted_outside, self._accepted_load = zero, zero, zero
@@ -97,25 +100,25 @@ class RigidBodies(Term):
         Raises:
             InputError: See `begin`.
         """
-        drives = {body: Drive(body) for body in self.bodies}
+        bcs = {body: RigidBoundaryConditions(body) for body in self.bodies}
         for step in steps:
             check_known(step, self._names)
-            for drive in drives.values():
-                drive.begin(step, drive.values(1.0), np.zeros(6))
-            yield self._frames(drives)
+            for bc in bcs.values():
+                bc.begin(step, bc.values(1.0), np.zeros(6))
+            yield self._frames(bcs)
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
         check_known(step, self._names)
         reactions = self._accepted_outside + self._accepted_of_faces - self._accepted_load
         for body, reaction in zip(self.bodies, reactions, strict=True):
-            drive = self._drives[body]
-            drive.begin(step, body.accepted.values, reaction)
-            body.turns_freely = not drive.prescribed[3:].all()
+            bc = self._bcs[body]
+            bc.begin(step, body.accepted.values, reaction)
+            body.turns_freely = not bc.prescribed[3:].all()
 
     def prescribed_turn(self, step: Step) -> float:
         """Largest rotation along the step that is prescribed of a body or facet group, radian."""
-        turns = [drive.largest_turn() for drive in self._drives.values()]
+        turns = [bc.largest_turn() for bc in self._bcs.values()]
         return max([*turns, *(turn.fastest for turn in step.rotation.values())], default=0.0)
 
     @override
@@ -126,14 +129,14 @@ class RigidBodies(Term):
 
     @override
     def end_at(self, factor: float) -> None:
-        for drive in self._drives.values():
-            drive.stop(factor)
+        for bc in self._bcs.values():
+            bc.stop(factor)
 
     def place(self, unknowns: Floats) -> None:
         """Bring the bodies to their unknowns, (size,), and to what is prescribed."""
         for body in self.bodies:
             if not body.free:
-                body.place(self._drives[body].values(self._load_factor))
+                body.place(self._bcs[body].values(self._load_factor))
         for body, values in zip(self.free, unknowns.reshape(-1, 6), strict=True):
             body.place(values / self._scales[body])
 
@@ -145,7 +148,7 @@ class RigidBodies(Term):
     def values(self) -> Floats:
         """Unknowns with the values that are prescribed at this level, zero for others, (size,)."""
         parts = [
-            np.where(self._drives[b].prescribed, self._drives[b].values(self._load_factor), 0.0)
+            np.where(self._bcs[b].prescribed, self._bcs[b].values(self._load_factor), 0.0)
             * self._scales[b]
             for b in self.free
         ]
@@ -164,11 +167,11 @@ class RigidBodies(Term):
         self._outside = self._forces()
         rows = np.zeros(self.size)
         for i, body in enumerate(self.free):
-            drive, scale = self._drives[body], self._scales[body]
+            bc, scale = self._bcs[body], self._scales[body]
             outside = (self._outside + self._of_faces)[self.bodies.index(body)]
-            row = (outside - drive.load(self._load_factor)) / scale
-            off = unknowns[6 * i : 6 * i + 6] - drive.values(self._load_factor) * scale
-            rows[6 * i : 6 * i + 6] = np.where(drive.prescribed, support_scale * off, row)
+            row = (outside - bc.load(self._load_factor)) / scale
+            off = unknowns[6 * i : 6 * i + 6] - bc.values(self._load_factor) * scale
+            rows[6 * i : 6 * i + 6] = np.where(bc.prescribed, support_scale * off, row)
         return rows
 
     def multiplier_residual(self, forces: Floats) -> Floats:
@@ -186,27 +189,27 @@ class RigidBodies(Term):
             )
             row = on_faces[self.bodies.index(body)] - np.asarray(self._comm.allreduce(local))
             row = row / self._scales[body]
-            rows[6 * i : 6 * i + 6] = np.where(self._drives[body].prescribed, 0.0, row)
+            rows[6 * i : 6 * i + 6] = np.where(self._bcs[body].prescribed, 0.0, row)
         return rows
 
     def loads(self) -> Floats:
         """Loads of the free bodies as the rows have them, (size,), force."""
-        parts = [self._drives[b].load(self._load_factor) / self._scales[b] for b in self.free]
+        parts = [self._bcs[b].load(self._load_factor) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
     def add_face_loads(self, out: Floats) -> None:
         """Add loads on bodies with faces to the local nodes of these, (nodes, 3); collective."""
         for body, faces in self.coupled.items():
             if faces:
-                add_face_loads(faces, self._drives[body].load(self._load_factor), out, self._comm)
+                add_face_loads(faces, self._bcs[body].load(self._load_factor), out, self._comm)
 
     def load(self, body: RigidBody, fraction: float) -> Floats:
         """Force and moment on a body at a fraction of the step, (6,)."""
-        return self._drives[body].load(fraction)
+        return self._bcs[body].load(fraction)
 
     def holds(self, body: RigidBody) -> Flags:
         """Which components the step prescribes, or springs hold, (6,)."""
-        return np.asarray(self._drives[body].prescribed | (body.springs > 0.0))
+        return np.asarray(self._bcs[body].prescribed | (body.springs > 0.0))
 
     def length_of_turns(self, body: RigidBody) -> float:
         """Length by which turns of a body are taken for lengths."""
@@ -215,13 +218,13 @@ class RigidBodies(Term):
     @property
     def rest(self) -> bool:
         """Whether no motion of them is prescribed along the step."""
-        return all(drive.rests for drive in self._drives.values())
+        return all(bc.rests for bc in self._bcs.values())
 
     @property
     def loads_rest(self) -> bool:
         """Whether loads on them hardly change along the step, and no springs act."""
         sprung = any(body.springs.any() for body in self.bodies)
-        rest = (drive.load_rests(self._scales[body]) for body, drive in self._drives.items())
+        rest = (bc.load_rests(self._scales[body]) for body, bc in self._bcs.items())
         return not sprung and all(rest)
 
     def spring_forces(self) -> Floats:
@@ -235,12 +238,12 @@ class RigidBodies(Term):
 
     def prescribed(self) -> Flags:
         """Which of the unknowns are prescribed, (size,)."""
-        own = [self._drives[body].prescribed for body in self.free]
+        own = [self._bcs[body].prescribed for body in self.free]
         return np.concatenate([np.zeros(0, dtype=bool), *own])
 
     def prescribed_of_faces(self) -> Ints:
         """Local numbers of the unknowns of faces that this step prescribes."""
-        own = [face.prescribed(self._drives[face.body].prescribed) for face in self._faces()]
+        own = [face.prescribed(self._bcs[face.body].prescribed) for face in self._faces()]
         return np.concatenate([np.zeros(0, dtype=np.int64), *own])
 
     def body_couplings(self, first: int) -> list[Couplings]:
@@ -270,7 +273,7 @@ class RigidBodies(Term):
                 stiff.append((blocks.held / scale).reshape(-1, 6))
             found.append((own, own, diagonal[None]))
             if not self.coupled[body]:  # else what holds the deformable body is looked at
-                free, contacts = ~self._drives[body].prescribed, self.contacts[body]
+                free, contacts = ~self._bcs[body].prescribed, self.contacts[body]
                 check_supported(body, free, np.concatenate(stiff), contacts, self._comm)
         return found
 
@@ -284,7 +287,7 @@ class RigidBodies(Term):
             body.history_of = self._key
         self._accepted_outside, self._accepted_of_faces = self._outside, self._of_faces
         self._accepted_load = np.array(
-            [self._drives[body].load(self._load_factor) for body in self.bodies]
+            [self._bcs[body].load(self._load_factor) for body in self.bodies]
         ).reshape(-1, 6)
         return work
 
@@ -306,13 +309,13 @@ class RigidBodies(Term):
         }
 
     def _last_loads(self) -> Floats:
-        found = [self._drives[body].last_load for body in self.bodies]
+        found = [self._bcs[body].last_load for body in self.bodies]
         return np.array(found).reshape(-1, 6)
 
     @override
     def restore(self, kept: Arrays) -> None:
         for body, load in zip(self.bodies, kept["rigid.last_load"], strict=True):
-            self._drives[body].last_load = load
+            self._bcs[body].last_load = load
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
             body.go_on(values, rotation)
@@ -331,7 +334,7 @@ class RigidBodies(Term):
         """Force and moment of what prescribes the accepted motion of a body, (6,)."""
         i = self.bodies.index(body)
         reaction = self._accepted_outside[i] + self._accepted_of_faces[i] - self._accepted_load[i]
-        return np.where(self._drives[body].prescribed, reaction, 0.0)
+        return np.where(self._bcs[body].prescribed, reaction, 0.0)
 
     def contact_force(self, body: RigidBody) -> Floats:
         """Force of contacts and faces on a body, moment about its reference point, (6,)."""
@@ -341,13 +344,11 @@ class RigidBodies(Term):
 
     def supported_frames(self) -> list[SupportedFrame]:
         """What this step prescribes, or springs hold, of the motion of faces."""
-        return self._frames(self._drives)
+        return self._frames(self._bcs)
 
-    def _frames(self, drives: Mapping[RigidBody, Drive]) -> list[SupportedFrame]:
+    def _frames(self, bcs: Mapping[RigidBody, RigidBoundaryConditions]) -> list[SupportedFrame]:
         return [
-            SupportedFrame(
-                face.nodes, body.reference, drives[body].prescribed | (body.springs > 0.0)
-            )
+            SupportedFrame(face.nodes, body.reference, bcs[body].prescribed | (body.springs > 0.0))
             for body, faces in self.coupled.items()
             for face in faces
         ]

@@ -1,4 +1,4 @@
-"""What a step prescribes of one rigid body: components of its motion, loads on the others."""
+"""Boundary conditions of one rigid body: components of its motion, loads on the others."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def check_known(step: Step, names: list[str]) -> None:
                 )
 
 
-class Drive:
+class RigidBoundaryConditions:
     """Motion and loads of one rigid body along the steps; at first all components are held.
 
     Attributes:
