@@ -112,10 +112,10 @@ class Assembly:
     def balance(self, trial: TrialState) -> ForceBalance:
         """Forces at a state to which rigid bodies have been brought; collective."""
         layout, u, x = self.layout, trial.nodal, trial.x
-        inner = self.bodies.inner(u) + layout.unknowns.own(self.aids.force(u))
+        internal = self.bodies.internal_force(u) + layout.unknowns.own(self.aids.force(u))
         reaction = layout.assembled(self.reactions.force(u))
         given = layout.assembled(self.loads.force(u))
-        outside = self.constraints.tied(-(inner + reaction))
+        outside = self.constraints.tied(-(internal + reaction))
         load = self.constraints.tied(given)
         self.rigid.take_faces(layout.unknowns.own_nodal(outside - load))
         residual = self.constraints.reduce(outside - load, x, self.scale)

@@ -91,9 +91,9 @@ class ReportedSystem(AssembledSystem):
         return sums
 
     def inner_forces(self) -> Floats:
-        """Forces that the cells put on the nodes this rank owns, accepted, (nodes, 3), force."""
+        """Internal force on the nodes this rank owns, accepted state, (nodes, 3), force."""
         self.reduction.recover()
-        return self.assembly.bodies.accepted_inner(self._bodies.nodal).reshape(-1, 3)
+        return self.assembly.bodies.accepted_internal_force(self._bodies.nodal).reshape(-1, 3)
 
     def support_forces(self) -> Floats:
         """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force.
@@ -102,8 +102,10 @@ class ReportedSystem(AssembledSystem):
         """
         self.reduction.recover()
         forces = self._accepted.reaction
-        if self.attached.beds:
-            forces = forces + self.layout.assembled(self.attached.beds.force(self._bodies.nodal))
+        if self.attached.supports:
+            forces = forces + self.layout.assembled(
+                self.attached.supports.force(self._bodies.nodal)
+            )
         return np.asarray(forces.reshape(-1, 3))
 
     def mean_displacement(self, group: str, weights: Floats) -> Floats:

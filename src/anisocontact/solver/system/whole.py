@@ -105,7 +105,7 @@ class Whole:
         """All forces but those of contact, and of these the loads, as constraints hand them on."""
         assembly = self._parts.assembly
         tied = assembly.constraints.tied
-        return tied(-(assembly.bodies.inner(nodal) + contact_force)), tied(load)
+        return tied(-(assembly.bodies.internal_force(nodal) + contact_force)), tied(load)
 
     def _reactions(self, supporting: Floats) -> dict[str, Floats]:
         """What all supports carry, by facet group."""

@@ -24,8 +24,8 @@ class Attachments(TermGroup):
 
     Attributes:
         coupling: Whether there are springs, which couple nodes that share no cell.
-        beds: The elastic supports.
-        bedded: Their facet groups.
+        supports: The elastic supports.
+        supported: Their facet groups.
 
     Raises:
         InputError: An unknown facet group, or two of one name.
@@ -35,8 +35,8 @@ class Attachments(TermGroup):
         self._all = [spec.on(model) for spec in specs]
         super().__init__(self._all)
         springs = [spec for spec in specs if isinstance(spec, Spring)]
-        self.bedded = [spec.group for spec in specs if isinstance(spec, ElasticSupport)]
-        self.beds = TermGroup([one for one in self._all if one.name in self.bedded])
+        self.supported = [spec.group for spec in specs if isinstance(spec, ElasticSupport)]
+        self.supports = TermGroup([one for one in self._all if one.name in self.supported])
         self._anchored = {one.name: one.stiffness for one in springs if one.to is None}
         self.coupling = bool(springs)
         #: Their names.

@@ -1,4 +1,4 @@
-"""The bodies themselves: what their stress does."""
+"""The bodies themselves: internal forces, elastic energy and temperatures."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from anisocontact.solver.terms.prescribed_components import PrescribedComponents
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
-#: Name of the forces that are kept.
-_INNER = "inner_force"
+#: Name of the internal force in a checkpoint.
+_NAME = "internal_force"
 
 #: What forces inside bodies come from.
 type Bulk = LinearBulk | NonlinearBulk | FormBulk
@@ -40,7 +40,7 @@ def mean_diagonal(diagonal: Floats, comm: Any) -> float:
 
 
 class Bodies(Term):
-    """Forces that stress in the bodies exerts on the nodes, complete where this rank owns them.
+    """Internal forces on the nodes, complete where this rank owns them.
 
     In sums of terms it comes first: its tangent is written, those of others are added.
 
@@ -66,49 +66,56 @@ class Bodies(Term):
         self._heat = dict.fromkeys(bulk.heated, 0.0)
         self._start: Vec | None = self._u.copy() if bulk.heated else None
         self.again, self.largest = False, 0.0
-        #: Forces of the last evaluation and where it was, and those of the accepted state.
-        self._inner, self._inner_at = np.zeros(0), np.zeros(0)
+        #: Internal force of the last evaluation and where it was, and that of the accepted state.
+        self._internal, self._internal_at = np.zeros(0), np.zeros(0)
         self._accepted: Floats | None = None
-        #: Displacement and forces at the last tangent.
+        #: Displacement and internal force at the last tangent.
         self._written: tuple[Vec, Floats] | None = None
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
-        inner = self.unknowns.own_nodal(self.inner(u))
-        out[: len(inner)] += inner
+        internal = self.unknowns.own_nodal(self.internal_force(u))
+        out[: len(internal)] += internal
 
-    def inner(self, u: Floats) -> Floats:
-        """The same of all unknowns this rank owns: those of other fields have a residual, too."""
-        self._inner = -np.asarray(self.bulk.force(self._owned(u)).array_r)
-        self._inner_at = np.array(self._u.array_r)
-        return self._inner
+    def internal_force(self, u: Floats) -> Floats:
+        """Internal force of all unknowns this rank owns, force; collective.
 
-    def accepted_inner(self, u: Floats) -> Floats:
-        """The same in the accepted state `u`; collective.
+        Of those of other fields as well, which have a residual, too.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+        """
+        self._internal = -np.asarray(self.bulk.force(self._owned(u)).array_r)
+        self._internal_at = np.array(self._u.array_r)
+        return self._internal
+
+    def accepted_internal_force(self, u: Floats) -> Floats:
+        """Internal force in the accepted state `u`, as of `internal_force`; collective.
 
         A material that knows time would go on from there by an increment if it was asked again.
         """
-        return self.inner(u) if self._accepted is None else self._accepted
+        return self.internal_force(u) if self._accepted is None else self._accepted
 
     def accepted_at_nodes(self) -> Arrays:
-        """Forces of the accepted state at the nodes this rank owns, where no evaluation has them.
+        """Internal force of the accepted state at the nodes this rank owns, to be restored.
 
-        What a material does in an increment cannot be asked again from its end.
+        None where an evaluation of that state gives it: what a material has done in an increment
+        cannot be asked again from its end.
         """
-        return {} if self._accepted is None else {_INNER: self._accepted.reshape(-1, 3).copy()}
+        return {} if self._accepted is None else {_NAME: self._accepted.reshape(-1, 3).copy()}
 
     def restore_at_nodes(self, kept: Arrays) -> None:
         """Go on from what `accepted_at_nodes` gave, among other things."""
-        self._accepted = kept[_INNER].reshape(-1).copy() if _INNER in kept else None
+        self._accepted = kept[_NAME].reshape(-1).copy() if _NAME in kept else None
 
     def missed(self) -> Floats:
-        """What forces have changed by since the last tangent, beyond what it says.
+        """What the internal force has changed by since the last tangent, beyond what it says.
 
         Of the last evaluation, of the unknowns of the mesh that this rank owns.
         """
         assert self._written is not None, "`add_tangent` comes first"
-        u, inner = self._written
-        return np.asarray(self._inner - inner + self.bulk.times(self._u - u).array_r)
+        u, internal = self._written
+        return np.asarray(self._internal - internal + self.bulk.times(self._u - u).array_r)
 
     def check(self, step: Step) -> None:
         """Refuse temperatures of bodies that do not expand.
@@ -144,7 +151,7 @@ class Bodies(Term):
     def add_tangent(self, matrix: Mat) -> None:
         self.bulk.tangent(matrix, again=self.again)
         if not self.again:
-            self._written = self._u.copy(), self._inner
+            self._written = self._u.copy(), self._internal
 
     def energy(self, u: Floats) -> float:
         """Elastic energy over all ranks, force times length."""
@@ -169,10 +176,10 @@ class Bodies(Term):
     @override
     def accept(self, u: Floats) -> float:
         if self.bulk.histories:
-            there = np.array_equal(self._inner_at, self._owned(u).array_r)
+            there = np.array_equal(self._internal_at, self._owned(u).array_r)
             if not self.unknowns.comm.allreduce(there, MPI.LAND):
-                self.inner(u)
-            self._accepted = self._inner
+                self.internal_force(u)
+            self._accepted = self._internal
         self.bulk.commit(self._owned(u))
         self._heat = self._temperatures_now()
         if self._start is not None:
