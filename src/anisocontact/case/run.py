@@ -288,7 +288,7 @@ def _increments(built: Built, writer: Writer, request: _StopRequest, facts: dict
 
 
 def _was_last(built: Built, accepted: Accepted) -> bool:
-    """Whether an accepted part ends the last step, or has its event: nothing is left to stop."""
+    """Whether an accepted state ends the last step, or has its event: nothing is left to stop."""
     step = built.steps[-1]
     last = built.solver.place.step == len(built.steps) - 1
     at_end = accepted.increment == step.increments and accepted.done == 1.0

@@ -33,7 +33,7 @@ from anisocontact.contact.multipliers import (
 )
 from anisocontact.interface import State
 
-#: Least part of an increment in contact that is divided by.
+#: Least share of an increment in contact that is divided by.
 LEAST_PART = 1e-9
 #: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends; so
 #: does a way that is as many times shorter.

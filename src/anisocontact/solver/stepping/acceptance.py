@@ -33,7 +33,7 @@ class Refusal:
     Attributes:
         reason: In a line.
         culprits: The places that caused it, over all ranks.
-        final: Whether no smaller part of the increment can help: the run stops.
+        final: Whether no smaller sub-increment can help: the run stops.
     """
 
     reason: str

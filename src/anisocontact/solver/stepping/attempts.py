@@ -1,4 +1,4 @@
-"""Ways to solve one part of the load, one after the other until one converges."""
+"""Ways to solve one sub-increment of the load, one after the other until one converges."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ from anisocontact.solver.system.problem import Problem
 
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0
-#: Parts in a row, each smaller than the one before, whose loads throw bodies farther than all is
-#: long: beyond that no smaller load is held either.
+#: Sub-increments in a row, each smaller than the one before, whose loads throw bodies farther than
+#: all is long: beyond that no smaller load is held either.
 FLOWN = 3
 #: Kinds of culprits, the gravest first.
 GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
@@ -53,14 +53,14 @@ class Outcome:
     Attributes:
         result: Of the attempt that converged, or of the last; iterations are those of all.
         culprits: Places that caused the failure of one of them.
-        final: Whether no smaller part can help, see `Refusal`.
+        final: Whether no smaller sub-increment can help, see `Refusal`.
         hint: What may be behind the failure, and what to do about it.
         failed: A point at which the laws failed, on the first rank that has one.
         relaxed: Whether penalties hold where no multipliers were found.
         way: Scheme that led to the multipliers, see `multiplier_schemes`.
         refused: Whether an equilibrium was found that no model of a body holds for.
-        ahead: Equilibrium at the end of the part that was refused as points turn too far, or as it
-            is beyond an event; smaller parts are on the way to it.
+        ahead: Equilibrium at the end of the sub-increment that was refused as points turn too far,
+            or as it is beyond an event; smaller sub-increments are on the way to it.
     """
 
     result: NewtonResult
@@ -80,7 +80,7 @@ class Outcome:
 
     @property
     def iterations(self) -> int:
-        """Newton iterations that show how hard the part was: searching multipliers does not."""
+        """Newton iterations that show how hard it was: searching multipliers does not."""
         return len(self.result.residuals) - 1 if self.relaxed else self.result.iterations
 
 
@@ -90,7 +90,7 @@ class _Attempt:
 
     Attributes:
         start: State that it starts from.
-        ratio: Part of the load over the last one if that is extrapolated, else 0.
+        ratio: Size of the sub-increment over the last one if that is extrapolated, else 0.
         full_steps: Whether there is no line search.
         damped: Whether corrections are taken in shares while the status of points alternates.
         flowing: Whether the bodies flow.
@@ -127,11 +127,11 @@ class Attempts:
     both fail, see `GradedPenalties`, and from then on where the first does. Where the status of
     points alternated, a further one takes a share of each correction: half as much as before where
     it still alternates, twice as much where it does not. Where that does not help either and the
-    part is small, the last one regularises, see `ViscousRegularisation`. Where a part is tiny, both
-    are tried whatever was in the way. Where multipliers are not required and a cut did not lead to
-    them, penalties come before these last ones. Where contact may hold free bodies without springs,
-    an attempt without them comes before all these. Multipliers that follow every correction have
-    ways of their own, see `_following`.
+    sub-increment is small, the last one regularises, see `ViscousRegularisation`. Where a
+    sub-increment is tiny, both are tried whatever was in the way. Where multipliers are not
+    required and a cut did not lead to them, penalties come before these last ones. Where contact
+    may hold free bodies without springs, an attempt without them comes before all these.
+    Multipliers that follow every correction have ways of their own, see `_following`.
 
     Args:
         problem: The problem.
@@ -170,11 +170,12 @@ class Attempts:
         Args:
             first: Extrapolated state.
             last: Accepted state.
-            ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
-            control: Size of the part: in a small one, that is not likely to get smaller, more is
-                tried, in a tiny one everything, whatever failed.
-            overloads: Loads that friction does not hold at the end of the part: everything is
-                tried, and what fails is final where nothing else can come to hold the bodies.
+            ratio: Size of this sub-increment over that of the last one, 0 where nothing is
+                extrapolated.
+            control: Size of the sub-increment: in a small one, that is not likely to get smaller,
+                more is tried, in a tiny one everything, whatever failed.
+            overloads: Loads that friction does not hold at the end of the sub-increment: everything
+                is tried, and what fails is final where nothing else can come to hold the bodies.
 
         Returns:
             What converged, or why nothing did, and where.
@@ -192,7 +193,7 @@ class Attempts:
                 result = replace(result, iterations=spent)
                 relaxed = way.multipliers == PENALTIES
                 return Outcome(result, relaxed=relaxed, way=way.way)
-            # nothing but a smaller part can help
+            # nothing but a smaller sub-increment can help
             if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent), ahead=self._ahead)
             # where bodies that flow find nothing that is not what was in the way
@@ -252,7 +253,7 @@ class Attempts:
         return [searching, full] if searching.ratio or not self._problem.in_full else [full]
 
     def _last_resorts(self, failed: _Attempt, flows: bool) -> list[_Attempt]:
-        """What is left to be tried where the status of points alternates, or parts are tiny."""
+        """What is left to be tried where the status of points alternates, or sizes are tiny."""
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True, graded=False)]
         if flows and self._problem.stabilisation.enabled and not failed.flowing:
@@ -306,7 +307,7 @@ class Attempts:
         """Why a state in equilibrium is not accepted, if it is not."""
         refusal = refused(self._problem, x)
         if refusal is None and not way.flowing:
-            # a jump turns points by as much in the smallest part
+            # a jump turns points by as much in the smallest sub-increment
             refusal = self._turns.objection(self._problem)
             self._ahead = x if self._turns.objects else None
         if refusal is None and self.events is not None:

@@ -1,4 +1,4 @@
-"""Ends steps where something happens: the part in which it does is made smaller until it is met."""
+"""Events that end a step: the sub-increment in which one happens is cut until it is met."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ from anisocontact.solver.terms.step import Step
 
 #: Value of a state, the trial at these unknowns or the accepted one; collective.
 type _Measure = Callable[[Vec | None], float]
-#: Share of what is left to where it has happened that a part has at least, and leaves at least.
+#: Share of what is left to where it has happened that a sub-increment has at least, and leaves at
+#: least.
 _BESIDE = 0.02
-#: Parts below this share of an increment are rounding.
+#: Sub-increments below this share of an increment are rounding.
 _ROUNDING = 1e-9
 #: What is measured where friction cannot hold the loads.
 _SLID = np.inf
@@ -46,11 +47,11 @@ class _Beyond:
 
 
 class EventWatch:
-    """Looks for the event of a step in the trials of its parts, and says where parts are to end.
+    """Looks for the event of a step in its trials, and says where sub-increments are to end.
 
-    A value is found by secants, with every second part half of what is left; what becomes of a
-    contact by halves. Sliding has come as well where loads are met that friction holds no longer,
-    see `overload`: there is no equilibrium beyond, and the step ends before them.
+    A value is found by secants, with every second sub-increment half of what is left; what becomes
+    of a contact by halves. Sliding has come as well where loads are met that friction holds no
+    longer, see `overload`: there is no equilibrium beyond, and the step ends before them.
 
     Args:
         problem: The problem, where the step begins.
@@ -86,7 +87,7 @@ class EventWatch:
         self._halved = True
 
     def persistent(self) -> Arrays:
-        """What the next parts depend on."""
+        """What the next sub-increments depend on."""
         if self._until is None:
             return {}
         beyond = (
@@ -137,16 +138,17 @@ class EventWatch:
         return self._contact
 
     def overload(self) -> bool:
-        """Friction does not hold the loads at the end of the part: the event comes before it.
+        """Friction does not hold the loads at the end of the trial: the event comes before.
 
         Returns:
-            Whether a smaller part is to be tried; none where friction is at its limit by now.
+            Whether a smaller sub-increment is to be tried; none where friction is at its limit by
+            now.
         """
         self.objects, self._beyond = self._part > _ROUNDING, _Beyond(self._end, _SLID)
         return self.objects
 
     def begin(self, part: float, end: float) -> None:
-        """A part is tried.
+        """A sub-increment is tried.
 
         Args:
             part: Its size, share of an increment.
@@ -188,7 +190,7 @@ class EventWatch:
             self._beyond, self._halved = None, True
 
     def _at_limit(self) -> bool:
-        """Whether friction cannot hold the loads from the tolerance on beyond the accepted part."""
+        """Whether friction holds no loads beyond the accepted state, but for the tolerance."""
         if self._until is None or self._beyond is None or self._beyond.value != _SLID:
             return False
         return self._beyond.end - self._end <= self._finest

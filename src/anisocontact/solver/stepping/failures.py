@@ -28,7 +28,7 @@ from anisocontact.solver.terms.step import Step
 
 
 class Failures:
-    """What is told of parts that do not converge.
+    """What is told of sub-increments that do not converge.
 
     Args:
         problem: The problem, in the last accepted state whenever something is asked.
@@ -43,7 +43,7 @@ class Failures:
 
         Args:
             step: The step.
-            place: Where in it the part failed.
+            place: Where in it the sub-increment failed.
             cuts: How often the increment has been cut before.
         """
         if cuts:
@@ -55,7 +55,7 @@ class Failures:
 
         Args:
             step: The step.
-            place: Where in it the part failed.
+            place: Where in it the sub-increment failed.
             cuts: How often the increment has been cut before.
         """
         if cuts < MANY:
@@ -69,8 +69,8 @@ class Failures:
         Args:
             step: The step.
             place: Where in it the increment failed.
-            outcome: What came of the last part.
-            tried: How small the parts were; empty if none was cut.
+            outcome: What came of the last sub-increment.
+            tried: How small the sub-increments were; empty if none was cut.
         """
         outcome = place.lost or outcome
         culprits, found = outcome.culprits, self._overloads(step, place)

@@ -8,18 +8,19 @@ from dataclasses import dataclass
 from anisocontact.base.limits import Limits
 from anisocontact.contact.multiplier_schemes import USUAL
 
-#: What is left of a part that failed.
+#: What is left of a sub-increment that failed.
 CUT = 0.25
-#: What a part grows by.
+#: What a sub-increment grows by.
 GROWTH = 2.0
-#: Parts in a row that have to converge before the next one grows; at most, where what they grow to
-#: has failed again and again: each time twice as many.
+#: Sub-increments in a row that have to converge before the next one grows; at most, where what they
+#: grow to has failed again and again: each time twice as many.
 STREAK, LONGEST_STREAK = 2, 16
-#: Times what a size may be short of another one to count as large: parts fill an increment evenly.
+#: Times what a size may be short of another one to count as large: sub-increments fill an increment
+#: evenly.
 SAME = 1.1
 #: Share of an increment at which smaller sub-increments are not likely to help.
 SMALL = 0.01
-#: Newton iterations beyond which a part was hard enough not to grow.
+#: Newton iterations beyond which a sub-increment was hard enough not to grow.
 HARD = 15
 
 
@@ -28,20 +29,22 @@ class IncrementControl:
     """Goes through the increments of a step in sub-increments, whose sizes are shares of one.
 
     Args:
-        limits: Bounds of the parts.
-        size: Size that the next part should have.
+        limits: Bounds of the sub-increments.
+        size: Size that the next sub-increment should have.
 
     Attributes:
         increment: Number of the increment that is worked at, from 1.
         done: Share of it that is done.
-        last: Size of the last part that converged, 0 at the start of a step.
-        streak: Parts in a row that converged.
-        failed: Size of the last part that failed, 0 where one as large has converged since.
-        wait: Parts in a row that have to converge before one is as large as that again.
+        last: Size of the last sub-increment that converged, 0 at the start of a step.
+        streak: Sub-increments in a row that converged.
+        failed: Size of the last sub-increment that failed, 0 where one as large has converged
+            since.
+        wait: Sub-increments in a row that have to converge before one is as large as that again.
         cuts: Number of cuts within this increment.
-        relaxed: Whether penalties held in the last part, as no multipliers were found.
-        way: Scheme that led to the multipliers of the last part, see `multiplier_schemes`.
-        goal: Share of the increment at which the next part ends, if it is that large; 0 for none.
+        relaxed: Whether penalties held in the last sub-increment, as no multipliers were found.
+        way: Scheme that led to the multipliers of the last sub-increment, see `multiplier_schemes`.
+        goal: Share of the increment at which the next sub-increment ends, if it is that large; 0
+            for none.
 
     Example:
         >>> limits = Limits()
@@ -68,44 +71,44 @@ class IncrementControl:
 
     @property
     def end(self) -> float:
-        """Where the next part ends: parts of equal size up to the end of the increment, 1."""
+        """Where the next one ends: those up to the end of the increment, 1, are equal."""
         left = 1.0 - self.done
-        # Round-off in a size is no reason for one more part.
+        # Round-off in a size is no reason for one more sub-increment.
         count = math.ceil(left / self.size * (1.0 - 1e-9))
         end = 1.0 if count <= 1 else self.done + left / count
         return min(end, self.goal) if self.goal > 0.0 else end
 
     @property
     def part(self) -> float:
-        """Size of the next part."""
+        """Size of the next sub-increment."""
         return self.end - self.done
 
     @property
     def tiny(self) -> bool:
-        """Whether a part smaller than the next one is not likely to help."""
+        """Whether a sub-increment smaller than the next one is not likely to help."""
         return self.part <= max(SMALL, self.limits.smallest)
 
     @property
     def small(self) -> bool:
-        """Whether the next part is tiny, or the last one that may be tried."""
+        """Whether the next sub-increment is tiny, or the last one that may be tried."""
         return self.tiny or self.cuts >= self.limits.cuts
 
     @property
     def cuttable(self) -> bool:
-        """Whether the limits allow to make the next part smaller."""
+        """Whether the limits allow to make the next sub-increment smaller."""
         return self.cuts < self.limits.cuts and self.part > self.limits.smallest
 
     @property
     def may_relax(self) -> bool:
-        """Whether penalties may hold in the next part: a cut has not led to multipliers."""
+        """Whether penalties may hold in the next one: a cut has not led to multipliers."""
         return self.small or self.relaxed or self.cuts > 0
 
     def bound(self, size: float) -> None:
-        """Make the next parts no larger than a size, as far as the limits allow."""
+        """Make the next sub-increments no larger than a size, as far as the limits allow."""
         self.size = min(self.size, max(size, self.limits.smallest))
 
     def advance(self, iterations: int, relaxed: bool = False, way: str = USUAL) -> None:
-        """Go on behind a part that has converged.
+        """Go on behind a sub-increment that has converged.
 
         Args:
             iterations: Newton iterations that it took.
@@ -128,7 +131,7 @@ class IncrementControl:
             self.cuts = 0
 
     def cut(self) -> bool:
-        """Make the next part smaller; False, and nothing changed, where a limit forbids it."""
+        """Cut the next sub-increment; False, and nothing changed, where a limit forbids it."""
         if not self.cuttable:
             return False
         again = self._as_large_as_failed(self.part)
@@ -140,5 +143,5 @@ class IncrementControl:
         return True
 
     def _as_large_as_failed(self, size: float) -> bool:
-        """Whether a size is that of the last part that failed, or more; parts fill an increment."""
+        """Whether a size is that which failed last, or more; equal ones fill an increment."""
         return 0.0 < self.failed <= SAME * size

@@ -47,9 +47,9 @@ FAR = 3.0
 #: Cuts of an increment beyond which friction that hardly holds the loads counts as exhausted, and
 #: from which on no more are made where nothing could hold a body where it touches.
 MANY = 2
-#: Smallest part, share of an increment, that is halved where friction would not hold its loads with
-#: the pressures of now, and the loads of now are far below: where the loads say how much presses,
-#: and where it may come to press more.
+#: Smallest sub-increment, share of an increment, that is halved where friction would not hold its
+#: loads with the pressures of now, and the loads of now are far below: where the loads say how much
+#: presses, and where it may come to press more.
 CLOSER, LESS_SURE = 0.05, 0.25
 #: Share of a motion that is a turn from which on a moment is told.
 TURNS = 0.1
@@ -136,13 +136,13 @@ def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
 
 
 def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:
-    """Loads on deformable bodies that are the reason to try everything in a part.
+    """Loads on deformable bodies that are the reason to try everything in a sub-increment.
 
-    Rigid surfaces are left out: parts in which nothing holds these end soon.
+    Rigid surfaces are left out: sub-increments in which nothing holds these end soon.
 
     Args:
         problem: The problem, in the last accepted state.
-        fraction: Fraction of the step at which the part ends.
+        fraction: Fraction of the step at which the sub-increment ends.
         now: Fraction of the step of the accepted state.
         cuts: Cuts of this increment so far.
     """
@@ -156,10 +156,10 @@ def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> li
 
 
 def least_halved(found: Sequence[Overload]) -> float:
-    """Smallest part that is halved to come closer to a limit of friction, share of an increment.
+    """Smallest size that is halved to come closer to a limit of friction, share of an increment.
 
     Args:
-        found: Loads that friction does not hold at the end of the part.
+        found: Loads that friction does not hold at the end of the sub-increment.
     """
     return CLOSER if any(one.pressed for one in found) else LESS_SURE
 

@@ -15,24 +15,25 @@ from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.solver.terms.persistent import Persistent
 
-#: Way of a free body over what it touches in a part, over the length that it touches along the way,
-#: from which on too many other points are pressed in the next one.
+#: Way of a free body over what it touches in a sub-increment, over the length that it touches along
+#: the way, from which on too many other points are pressed in the next one.
 TRAVELS = 0.15
 
 
 class Predictor:
-    """Extrapolates what has happened in the last part to the end of the next one.
+    """Extrapolates what has happened in the last sub-increment to the end of the next one.
 
-    Where an equilibrium further on is known, which was refused as its part was too large, smaller
-    parts are sought on the way to it: after a change of direction what has happened before says
-    little.
+    Where an equilibrium further on is known, which was refused as its sub-increment was too large,
+    smaller sub-increments are sought on the way to it: after a change of direction what has
+    happened before says little.
 
     Where a free rigid body rolls or slides over a deformable one, other points are pressed next:
     extrapolated displacements would press those that it leaves, and contact is lost. There rigid
     bodies go on as they did, and deformable ones start from where they are.
 
     Attributes:
-        travels: Whether a free rigid body has travelled over what it touches in the last part.
+        travels: Whether a free rigid body has travelled over what it touches in the last
+            sub-increment.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -63,17 +64,17 @@ class Predictor:
         self._ahead, self._left = None, 0.0
 
     def refuse(self, state: Vec | None, part: float) -> None:
-        """Take note of an equilibrium that was refused as its part is too large.
+        """Take note of an equilibrium that was refused as its sub-increment is too large.
 
         Args:
             state: The equilibrium; None where none was found.
-            part: Size of the part that leads to it, share of an increment.
+            part: Size of the sub-increment that leads to it, share of an increment.
         """
         if state is not None:
             self._ahead, self._left = state, part
 
     def accept(self, part: float) -> None:
-        """Take note of a part that has been accepted; collective.
+        """Take note of a sub-increment that has been accepted; collective.
 
         Args:
             part: Its size, share of an increment.
@@ -92,7 +93,7 @@ class Predictor:
         Args:
             last: Accepted state.
             before: The accepted state before it; None where there is none to extrapolate from.
-            control: Sizes of the next part and of the last one.
+            control: Sizes of the next sub-increment and of the last one.
         """
         ratio = 0.0 if before is None else control.part / control.last
         if self._ahead is not None and control.part <= self._left + _ROUNDING:
@@ -141,7 +142,7 @@ class Predictor:
                 to[own] = found - x
 
     def _way(self, body: RigidBody, contact: Contact) -> float:
-        """Way of a body along what it touches in the last part, over the length that it touches."""
+        """Last path of a body along what it touches, over the length that it touches."""
         comm, touching = self._problem.comm, contact.last.status != 0
         points = contact.points[touching]
         moved = (points - self._points[contact][touching]).sum(axis=0)
@@ -157,6 +158,6 @@ class Predictor:
         return size / (contact.facet_size + float(most - least)) if count else 0.0
 
 
-#: Rounding of sizes of parts.
+#: Rounding of sizes of sub-increments.
 _ROUNDING = 1e-9
 _TINY = float(np.finfo(np.float64).tiny)

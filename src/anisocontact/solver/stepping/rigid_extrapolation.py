@@ -1,8 +1,8 @@
 """Bodies that turn, extrapolated: a rigid motion goes on about its axis, not along its chord.
 
-A chord leads away from the axis: a body that turns by an angle a in a part is predicted too large
-by a^2, which strains it as no load does. What is no rigid motion turns with the body and goes on
-as it did.
+A chord leads away from the axis: a body that turns by an angle a in a sub-increment is predicted
+too large by a^2, which strains it as no load does. What is no rigid motion turns with the body and
+goes on as it did.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def turned_on(
     Args:
         before: Where this rank's points were, (n, 3), length.
         after: Where they are, (n, 3), length.
-        ratio: Size of the next part over that of the last one.
+        ratio: Size of the next sub-increment over that of the last one.
         total: Sum over all ranks.
         about: Whether a turn about each axis is a rigid motion: that of a section of a body of
             revolution is none, (3,).

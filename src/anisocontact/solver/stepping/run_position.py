@@ -1,4 +1,4 @@
-"""How far a run has come: its step, increment and part, and what it goes on from there."""
+"""How far a run has come: its step, increment and sub-increment, and what it goes on from there."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class RunPosition:
     Attributes:
         step: Number of the step, from 0.
         time: Time at which it began.
-        control: Increments and parts of it.
+        control: Increments and sub-increments of it.
         begun: Whether the problem has the loads of the step.
-        before: State before the last accepted part of this step; None at its beginning.
-        spent: Newton iterations since the last accepted part.
-        lost: What came of a part of this increment in which equilibrium was lost for good.
+        before: State before the last accepted sub-increment of this step; None at its beginning.
+        spent: Newton iterations since the last accepted sub-increment.
+        lost: What came of a sub-increment of this increment in which equilibrium was lost for good.
         stopped: Fractions at which steps that an event ended did, by number.
         events: Looks for the event of the step; None before it has begun.
     """

@@ -163,7 +163,7 @@ class Solver(Uncopied):
             yield from with_one_thread(self._all(note, warn))
 
     def persistent(self) -> Persistent:
-        """State of the problem and of the run after the last accepted part, of this rank."""
+        """State of the problem and of the run as last accepted, of this rank."""
         kept = self.problem.persistent()
         kept.common["problem"] = as_array(self._made_of)
         kept.common["energy_watch"] = self._energy.persistent()
@@ -231,7 +231,7 @@ class Solver(Uncopied):
                 newton.close()
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
-        """Part by part to the end of the step, or to its event."""
+        """Sub-increment by sub-increment to the end of the step, or to its event."""
         place, control = self.place, self.place.control
         largest, events = self._begin(step)
         attempts.events = events
@@ -266,8 +266,8 @@ class Solver(Uncopied):
         """Take over the loads of a step, unless they are in a run that goes on.
 
         Returns:
-            Largest part by how far the step turns rigid bodies, share of an increment; and what
-            looks for its event.
+            Largest sub-increment by how far the step turns rigid bodies, share of an increment; and
+            what looks for its event.
         """
         place, control = self.place, self.place.control
         self._check_alone()
@@ -296,7 +296,7 @@ class Solver(Uncopied):
             raise InputError(text, field="problem")
 
     def _slides_before_end(self, step: Step, events: EventWatch) -> bool:
-        """Whether friction cannot hold the loads at the end of a part that ends with sliding."""
+        """Whether friction cannot hold the loads where a step that ends with sliding goes next."""
         control = self.place.control
         control.goal = events.goal(control.done)
         events.begin(control.part, control.end)
@@ -312,7 +312,7 @@ class Solver(Uncopied):
         return far
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
-        """Solve the next part from the state that is predicted for its end."""
+        """Solve the next sub-increment from the state that is predicted for its end."""
         control = self.place.control
         dt = step.duration / step.increments
         end = fraction(step, control.increment, control.end)
@@ -321,7 +321,8 @@ class Solver(Uncopied):
         first, ratio = self._predictor.state(last, self.place.before, control)
         self._turns.permitted = control.cuttable
         release_unreferenced(self.problem.comm)
-        # where friction cannot hold the loads no smaller part leads to the end of the increment
+        # where friction cannot hold the loads no smaller sub-increment leads to the end of the
+        # increment
         overloads = past_holding(self.problem, end, self.place.reached(step), control.cuts)
         with self._options:
             return attempts.solve(first, last, ratio, control, overloads)

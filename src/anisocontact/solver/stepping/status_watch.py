@@ -15,7 +15,7 @@ from anisocontact.solver.strategies.residual_history import repeats
 MEMORY = 8
 #: Changes of status among them that make a point one that alternates.
 CHANGES = 4
-#: Returns to a facet among them that make a point one that hops.
+#: Returns to a facet among them that make a point one that alternates between facets.
 RETURNS = 2
 #: Iterations over which a residual that does not fall to `GAIN` of what it was has come to a halt.
 HALT, GAIN = 6, 0.5
@@ -50,7 +50,7 @@ class StatusWatch:
         self._residuals.append(residual)
 
     def hold(self) -> None:
-        """Hold points that hop on the facet where they are, where that keeps the residual up.
+        """Hold points that alternate between facets where they are, if that keeps the residual up.
 
         While it falls they may come to rest by themselves, at the closest facet.
         """

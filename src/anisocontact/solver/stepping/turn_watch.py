@@ -17,16 +17,18 @@ from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 
-#: Share of `FOLLOWED` that is let pass: parts are sized for the limit itself.
+#: Share of `FOLLOWED` that is let pass: sub-increments are sized for the limit itself.
 MARGIN = 1.05
-#: Prescribed rotation along a part at most: more could pass for another one, radian.
+#: Prescribed rotation along a sub-increment at most: more could pass for another one, radian.
 PRESCRIBED = math.radians(45.0)
-#: Share of its angle that a part of at most a share of the size of one that was refused keeps at
-#: least where it does not depend on the size: where a point passes from one facet to another one at
-#: an angle, in this part of what was cut or in a later one. On surfaces, which have none, more.
+#: Share of its angle that a sub-increment of at most a share of the size of one that was refused
+#: keeps at least where it does not depend on the size: where a point passes from one facet to
+#: another one at an angle, in this one or in a later one. On surfaces, which have
+#: none, more.
 _KINK, _ON_SURFACES, _SMALLER = 0.6, 0.75, 0.5
-#: Turn over size of a part, over that of one that was refused, from which on the next one is no
-#: larger than its refusal lets it be: points turn by more in the second half of a part.
+#: Turn over size of a sub-increment, over that of one that was refused, from which on the next one
+#: is no larger than its refusal lets it be: points turn by more in the second half of a
+#: sub-increment.
 _AS_FAST = 0.5
 #: Names in a checkpoint of the kink, and of angle and size of what was refused.
 _KEPT = ("place.kink", "place.refused_angle", "place.refused_size")
@@ -48,7 +50,7 @@ class PathTurn:
 
     @property
     def reason(self) -> str:
-        """Why a part is cut, in a line."""
+        """Why a sub-increment is cut, in a line."""
         return (
             f"contact {self.contact!r} turns by {math.degrees(self.angle):.0f} degrees in it, "
             f"{math.degrees(FOLLOWED):.0f} are followed well"
@@ -56,13 +58,13 @@ class PathTurn:
 
 
 def half_turns(prescribed: float, smallest: float) -> str:
-    """Why an increment cannot be followed whose parts may not be small enough; empty if it can.
+    """Why an increment cannot be followed that may not be cut enough; empty if it can.
 
     From half a turn on friction would be that of a turn the other way.
 
     Args:
         prescribed: Rotation of a body or facet group that an increment prescribes, radian.
-        smallest: Smallest part, share of an increment.
+        smallest: Smallest sub-increment, share of an increment.
     """
     part = prescribed * smallest
     if part < math.pi * (1.0 - 1e-9):
@@ -86,13 +88,15 @@ def largest_turn(problem: Problem) -> PathTurn:
 
 
 class TurnWatch:
-    """Says whether a part turns too far, and how large the next one may be.
+    """Says whether a sub-increment turns too far, and how large the next one may be.
 
     Attributes:
-        permitted: Whether parts may be cut: not at the limits of the cuts.
-        objects: Whether the last part was objected to.
-        kink: Angle up to which turns did not depend on the size of the parts of this step, radian.
-        refused: Angle, radian, and time increment of the last part of this step that was refused.
+        permitted: Whether sub-increments may be cut: not at the limits of the cuts.
+        objects: Whether the last sub-increment was objected to.
+        kink: Angle up to which turns did not depend on the size of the sub-increments of this step,
+            radian.
+        refused: Angle, radian, and time increment of the last sub-increment of this step that was
+            refused.
     """
 
     def __init__(self) -> None:
@@ -105,7 +109,7 @@ class TurnWatch:
         self.refused = (0.0, 0.0)
 
     def objection(self, problem: Problem) -> Refusal | None:
-        """Why the trial of a part is to be cut; None where it may be accepted. Collective."""
+        """Why a trial is to be cut; None where it may be accepted. Collective."""
         turned = largest_turn(problem)
         self._angle, self._size = turned.angle, problem.dt
         angle, size = self.refused
@@ -118,7 +122,7 @@ class TurnWatch:
         return Refusal(turned.reason)
 
     def allowed(self, part: float) -> float:
-        """Size of the next part after one that was accepted, share of an increment."""
+        """Size of the next sub-increment after one that was accepted, share of an increment."""
         if self._angle <= self.kink:
             return 1.0
         angle, size = self.refused

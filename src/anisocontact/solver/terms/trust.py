@@ -9,13 +9,13 @@ class Trust:
     """Whether bodies that stick go without springs in the next attempt.
 
     Once an attempt without springs has failed, contact is trusted again when it has held all bodies
-    in as many accepted parts as `_patience` says, when bodies on springs of their own are caught,
+    in as many sub-increments as `_patience` says, when bodies on springs of their own are caught,
     or when the step ends. The patience doubles each time that contact is trusted in vain: where
     springs are needed all through a step, few attempts without them are lost.
 
     Attributes:
         careful: Whether bodies get springs also where they stick.
-        held: Whether contact has held all bodies in the last accepted part of the step, as it may
+        held: Whether contact has held all bodies in the last sub-increment of the step, as it may
             where all their points slide.
     """
 
