@@ -87,7 +87,7 @@ def test_bodies_come_through_equilibria_of_the_laws_alone(
     """
     gone: list[str] = []
     springs = SimpleNamespace(
-        flow=SimpleNamespace(flows=False),
+        regularisation=SimpleNamespace(active=False),
         force=lambda _: 0.0,
         improve=lambda *_: True,
         travels=True,

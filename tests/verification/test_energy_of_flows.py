@@ -47,10 +47,10 @@ def test_a_flow_over_the_limit_of_friction(
 
 
 def only_flows(monkeypatch: pytest.MonkeyPatch) -> None:
-    def flowing(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
-        return [replace(full, flowing=True)]
+    def regularised(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
+        return [replace(full, regularised=True)]
 
-    monkeypatch.setattr(Attempts, "_ways", flowing)
+    monkeypatch.setattr(Attempts, "_ways", regularised)
 
 
 def jumping(pair: bool, exact: bool, mortar: bool, gap: float = 0.0, **parts: Any) -> Problem:

@@ -35,7 +35,7 @@ def _thrown_up(
     problem.begin(Step("press", 1, held, {"block.top": {"z": load}}))
     problem.set_load_factor(1.0, 1.0)
     if flows:
-        problem.stabilisation.flow.start(problem.nodal)
+        problem.stabilisation.regularisation.start(problem.nodal)
     x = problem.new_vector()
     thrown = np.zeros((len(x.array_r) // 3, 3))
     (block,) = [one for one in bodies(problem.model) if one.name == "block"]

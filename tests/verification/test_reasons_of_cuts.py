@@ -18,9 +18,9 @@ def test_bodies_that_flow_in_vain_are_not_the_reason(monkeypatch: pytest.MonkeyP
     """What was in the way of the attempts before is told, not how the last resort failed."""
 
     def attempt(_: Attempts, way: Any) -> tuple[NewtonResult, list[Culprit]]:
-        reason = "the bodies do not come to rest" if way.flowing else "no convergence"
-        flowed.append(way.flowing)
-        kind = "inverted" if way.flowing else "flipping"
+        reason = "the bodies do not come to rest" if way.regularised else "no convergence"
+        flowed.append(way.regularised)
+        kind = "inverted" if way.regularised else "flipping"
         return NewtonResult(1, [1.0], reason), [Culprit(kind, (0.0, 0.0, 0.0), "here", "c")]
 
     flowed: list[bool] = []

@@ -319,7 +319,7 @@ def test_every_step_of_a_flow_is_looked_at(strategy: str, monkeypatch: pytest.Mo
     asked: list[bool] = []
 
     def objection(self: SidesKept, *_: Any, **__: Any) -> Culprit | None:
-        asked.append(problem.stabilisation.flow.flows)
+        asked.append(problem.stabilisation.regularisation.active)
         return Culprit("behind", (0.0, 0.0, 0.0), "body 'block' is behind") if asked[-1] else None
 
     monkeypatch.setattr(SidesKept, "objection", objection)

@@ -29,7 +29,7 @@ def _always_regularised(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every attempt starts from the accepted state, with viscous forces."""
 
     def ways(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
-        return [replace(full, flowing=True)]
+        return [replace(full, regularised=True)]
 
     monkeypatch.setattr(Attempts, "_ways", ways)
 
@@ -79,7 +79,7 @@ def test_its_work_is_what_its_ends_say(
 
 
 def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A line for every increment that flowed; nothing of it is left in the next attempt."""
+    """A line for every increment that is regularised; nothing of it is left in the next attempt."""
     _always_regularised(monkeypatch)
     block = fe.block(fe.interface(), cells=(2, 2, 1))
     springs = block.problem.stabilisation
@@ -87,17 +87,19 @@ def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch)
         (line,) = springs.take_notes()
         assert line.startswith("equilibrium was lost: ")
         assert not springs
-        assert springs.flow.stiffness == 0.0
+        assert springs.regularisation.stiffness == 0.0
 
 
 def _named(way: Any) -> str:
     """What an attempt is, in a word."""
-    kinds = [name for name in ("flowing", "damped", "graded") if getattr(way, name)]
-    return {"flowing": "flow"}.get(kinds[0], kinds[0]) if kinds else "plain"
+    kinds = [name for name in ("regularised", "damped", "graded") if getattr(way, name)]
+    return kinds[0] if kinds else "plain"
 
 
-def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only small parts flow, after the damped attempt, and not with `stabilisation = false`."""
+def test_regularisation_comes_last_and_where_it_may(
+    fe: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only small sub-increments, after the damped attempt, not with `stabilisation = false`."""
     tried: list[str] = []
     attempt = Attempts._attempt
 
@@ -108,7 +110,7 @@ def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(Attempts, "_attempt", alternating)
     four = ["plain", "plain", "graded", "damped"]
-    for stabilised, ways in ((True, [*four, *four, "flow"]), (False, [*four, *four])):
+    for stabilised, ways in ((True, [*four, *four, "regularised"]), (False, [*four, *four])):
         tried.clear()
         block = fe.block(fe.interface(), cells=(2, 2, 1))
         block.problem.stabilisation.enabled = stabilised

@@ -40,7 +40,7 @@ STORED = 0.01
 ROUNDING = 1e-5
 #: What is too small where bodies penetrate.
 NORMAL = "a larger normal penalty"
-#: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
+#: Share of the external work beyond which energy of stabilisation, or regularisation, is told.
 STABILISED = 0.05
 #: What the summary has the largest value over the run of, and the quantity that it is of.
 _WORST = {

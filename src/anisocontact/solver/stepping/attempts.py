@@ -93,7 +93,7 @@ class _Attempt:
         ratio: Size of the sub-increment over the last one if that is extrapolated, else 0.
         full_steps: Whether there is no line search.
         damped: Whether corrections are taken in shares while the status of points alternates.
-        flowing: Whether the bodies flow.
+        regularised: Whether viscous forces act, see `ViscousRegularisation`.
         multipliers: Way to the multipliers of augmented contacts.
         spare: Whether its failure says nothing of what holds the bodies.
         layered: Whether stiff laws are come to by way of what is easier, see `Continuation`.
@@ -104,7 +104,7 @@ class _Attempt:
     ratio: float = 0.0
     full_steps: bool = True
     damped: bool = False
-    flowing: bool = False
+    regularised: bool = False
     multipliers: str = USUAL
     spare: bool = False
     layered: bool = False
@@ -196,8 +196,8 @@ class Attempts:
             # nothing but a smaller sub-increment can help
             if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent), ahead=self._ahead)
-            # where bodies that flow find nothing that is not what was in the way
-            if not way.flowing or result.culprits:
+            # a regularised attempt without culprits says nothing of what was in the way
+            if not way.regularised or result.culprits:
                 failed, found = result.reason, _graver(found, culprits)
             far |= result.far > 0.0
             seen |= {culprit.kind for culprit in culprits}
@@ -252,15 +252,15 @@ class Attempts:
         """Both ways; one where there is neither extrapolation nor a line search between them."""
         return [searching, full] if searching.ratio or not self._problem.in_full else [full]
 
-    def _last_resorts(self, failed: _Attempt, flows: bool) -> list[_Attempt]:
+    def _last_resorts(self, failed: _Attempt, may_jump: bool) -> list[_Attempt]:
         """What is left to be tried where the status of points alternates, or sizes are tiny."""
-        if not failed.damped and not failed.flowing:
+        if not failed.damped and not failed.regularised:
             return [replace(failed, damped=True, graded=False)]
-        if flows and self._problem.stabilisation.enabled and not failed.flowing:
-            # bodies that flow from one contact to another find multipliers with smaller penalties
+        if may_jump and self._problem.stabilisation.enabled and not failed.regularised:
+            # on the way from one contact to another multipliers are found with smaller penalties
             follows = SOFTER in self._problem.contact_term.ways
             by = SOFTER if follows else failed.multipliers
-            return [_Attempt(failed.start, flowing=True, multipliers=by)]
+            return [_Attempt(failed.start, regularised=True, multipliers=by)]
         return []
 
     def _attempt(self, way: _Attempt) -> tuple[NewtonResult, list[Culprit]]:
@@ -284,7 +284,7 @@ class Attempts:
             problem.together.met()
             raise
         finally:
-            problem.stabilisation.flow.stop()
+            problem.stabilisation.regularisation.stop()
             if not problem.together.apart:
                 self._continuation.end()
                 problem.roll_back()
@@ -292,8 +292,8 @@ class Attempts:
     def _correct(self, way: _Attempt, x: Vec) -> NewtonResult:
         """Newton's method on one of the ways; `x` is its start, and its last iterate."""
         problem = self._problem
-        if way.flowing:
-            problem.stabilisation.flow.start(problem.nodal)
+        if way.regularised:
+            problem.stabilisation.regularisation.start(problem.nodal)
         problem.contact_term.take_way(way.multipliers)
         problem.contact_term.predict(way.ratio)
         if way.layered:
@@ -306,13 +306,13 @@ class Attempts:
     def _objection(self, way: _Attempt, x: Vec) -> Refusal | None:
         """Why a state in equilibrium is not accepted, if it is not."""
         refusal = refused(self._problem, x)
-        if refusal is None and not way.flowing:
+        if refusal is None and not way.regularised:
             # a jump turns points by as much in the smallest sub-increment
             refusal = self._turns.objection(self._problem)
             self._ahead = x if self._turns.objects else None
         if refusal is None and self.events is not None:
             refusal = self.events.objection(x)
-            self._ahead = x if refusal is not None and not way.flowing else None
+            self._ahead = x if refusal is not None and not way.regularised else None
         return refusal
 
     def _culprits(self, result: NewtonResult) -> list[Culprit]:

@@ -355,7 +355,8 @@ class Solver(Uncopied):
 
     def _report(self, iteration: int, residual: float) -> None:
         self._watch.note(residual)
-        if not self.problem.stabilisation.flow.flows:  # bodies that flow go far in an attempt
+        # with viscous regularisation bodies go far in an attempt
+        if not self.problem.stabilisation.regularisation.active:
             self._watch.hold()
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}

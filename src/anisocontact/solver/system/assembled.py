@@ -39,21 +39,21 @@ class AssembledSystem:
 
         Raises:
             NotHeldError: They do not converge.
-            LostError: A body flows to where it cannot be.
+            LostError: Viscous regularisation leads a body to where it cannot be.
         """
         self.evaluate_at(x)
         aid, moved = self._aid, False
         cycles = self.contact_term.in_cycles
         if aid is not None:
             springs = aid.force(self.nodal)
-            wrong = self.behind_a_master(x) if aid.flow.flows else None
-            gone = aid.flown_off(self.nodal) if aid.flow.flows else None
+            wrong = self.behind_a_master(x) if aid.regularisation.active else None
+            gone = aid.flown_off(self.nodal) if aid.regularisation.active else None
             if gone is not None:
                 wrong = _gone(*gone)
             if wrong is not None:
                 raise LostError(wrong)
             moved = aid.improve(self.nodal, self.balance.force_scale)
-            if moved and aid.flow.flows:
+            if moved and aid.regularisation.active:
                 return True
             if moved:
                 self.contact_term.settle()
@@ -68,10 +68,10 @@ class AssembledSystem:
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any.
 
-        Bodies that flow take a shorter step instead.
+        Viscous regularisation takes a shorter step in pseudo-time instead.
         """
-        if self._aid is not None and self._aid.flow.flows:
-            return self._aid.flow.soften()
+        if self._aid is not None and self._aid.regularisation.active:
+            return self._aid.regularisation.soften()
         return self.contact_term.soften()
 
     @property

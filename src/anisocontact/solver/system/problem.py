@@ -332,7 +332,7 @@ class Problem(ComposedSystem, Uncopied):
         """
         ends, nodal = self.reduction.commit(x), self.reduction.nodal(x)
         ends += EndsWork.of(*self.assembly.bodies.heating(nodal))
-        self.flowed = ends if self.stabilisation.flow.flows else None
+        self.flowed = ends if self.stabilisation.regularisation.active else None
         work = ends.mean + self._contact_work.of_overlaps()
         so_far = self._accepted.work + work
         work += self._contact_work.beyond_the_means(nodal, self.dt, so_far, ends)

@@ -17,7 +17,7 @@ BEYOND = 2.0
 def flown_off(
     bodies: Iterable[FreeBody], begun: Floats, u: Floats
 ) -> tuple[FreeBody, float] | None:
-    """A body in a flow, or on springs, that nothing can stop any more, and how far; collective.
+    """A body, regularised or on springs, that nothing can stop any more, and how far; collective.
 
     None of its points has anything of a master below it that it may come back to, and it has come
     farther than to where it could meet one, see `farthest_way`.

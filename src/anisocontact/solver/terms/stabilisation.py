@@ -64,12 +64,12 @@ class Stabilisation(Term):
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
-        released: What jumps have set free since the start that bodies came through by `flow`,
-            force times length.
+        released: What jumps have set free since the start that bodies came through by
+            `regularisation`, force times length.
         trust: Whether bodies that stick go without springs.
         landed: Whether a body was in the air before the accepted state: how it has moved says
-            nothing of the next part.
-        flow: What carries the bodies on where their equilibrium is lost.
+            nothing of the next sub-increment.
+        regularisation: What carries the bodies on where their equilibrium is lost.
         notes: What is stabilised since the last `begin`, a line for each body.
     """
 
@@ -88,7 +88,7 @@ class Stabilisation(Term):
         self.landed = False
         self.trust = Trust()
         self.notes: list[str] = []
-        self.flow = ViscousRegularisation(model, scale)
+        self.regularisation = ViscousRegularisation(model, scale)
         self._scale = scale
         self._comm, self._contacts = model.mesh.comm, contacts
         self._motion = BodyMotion(contacts, attached, self._comm)
@@ -101,12 +101,12 @@ class Stabilisation(Term):
         self._count = 0
 
     def __bool__(self) -> bool:
-        return bool(self._free) or self.flow.flows
+        return bool(self._free) or self.regularisation.active
 
     @property
     def stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness at each node of every body that is kept in reach, then of the flow."""
-        return *(free.stiffness for free in self._free), self.flow.stiffness
+        """Stiffness at each node of every body that is kept in reach, then of the viscosity."""
+        return *(free.stiffness for free in self._free), self.regularisation.stiffness
 
     @property
     def watches(self) -> bool:
@@ -119,9 +119,9 @@ class Stabilisation(Term):
 
         It is where loads carry them: what these work there is lost. Bodies that touch, and on which
         springs stand against nothing but contact, slide with what moves them: where to, springs
-        only help to find, and so does a flow.
+        only help to find, and so does viscous regularisation.
         """
-        return self._work.driven and not self.flow.flows
+        return self._work.driven and not self.regularisation.active
 
     @property
     def loose(self) -> list[FreeBody]:
@@ -220,14 +220,14 @@ class Stabilisation(Term):
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
-        self.flow.add_force(u, out)
+        self.regularisation.add_force(u, out)
         for free in self._free:
             nodes = free.nodes
             out[nodes] -= free.stiffness * (u[nodes] - self._anchor[nodes])
 
     @override
     def blocks(self) -> list[Couplings]:
-        found = self.flow.blocks()
+        found = self.regularisation.blocks()
         for free in self._free:
             nodes = free.nodes.astype(PETSc.IntType)[:, None]
             found.append((nodes, nodes, np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))))
@@ -246,7 +246,7 @@ class Stabilisation(Term):
         Raises:
             NotHeldError: Nothing holds a body.
         """
-        if self.flow.improve(u, at_work):
+        if self.regularisation.improve(u, at_work):
             return True
         if not self._free:
             return False
@@ -366,10 +366,10 @@ class Stabilisation(Term):
         self._work.spent = 0.0
         self.trust.accept()
         self.landed = self._work.fell
-        if self.flow.flows:
-            steps = self.flow.steps
+        if self.regularisation.active:
+            steps = self.regularisation.steps
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous regularisation")
-            self.flow.stop()
+            self.regularisation.stop()
         return 0.0
 
     @override

@@ -1,13 +1,13 @@
 """Viscous regularisation: from where equilibrium is lost to the next one.
 
-At a limit point, such as an edge that digs in and lets go, the path of equilibria ends: no part of
-an increment is small enough, and points alternate between stick and slip. The bodies would jump.
-Here they flow as in a viscous medium, in implicit steps of pseudo-time [Kelley Keyes 1998],
+At a limit point, such as an edge that digs in and lets go, the path of equilibria ends: no
+sub-increment is small enough, and points alternate between stick and slip. The bodies would jump.
+Here they move as in a viscous medium, in implicit steps of pseudo-time [Kelley Keyes 1998],
 
     R(x) + c (x - x_k) = 0 ,
 
 c the viscosity over the step of time. Steps grow where they are easy and shrink where Newton's
-method cannot follow. Friction goes from the accepted state to where the flow is, so that what is
+method cannot follow. Friction goes from the accepted state to where they are, so that what is
 accepted is equilibrium without viscosity.
 """
 
@@ -32,9 +32,9 @@ LONGER, SHORTER = 0.25, 4.0
 EASY = 8
 #: Steps between two that may be longer, or between two searches for rest.
 PATIENCE = 3
-#: Viscous force over the forces at work below which the flow may be near its end.
+#: Viscous force over the forces at work below which rest may be near.
 SLOW = 0.1
-#: Steps after which the flow is given up.
+#: Steps after which it is given up.
 MOST_STEPS = 200
 
 
@@ -48,7 +48,7 @@ class ViscousRegularisation(Term):
     Attributes:
         stiffness: Viscosity over the step of time, of each node, force/length; 0 at rest.
         steps: Number of steps since the start.
-        flows: Whether this is one of the attempts that flow.
+        active: Whether this is one of the attempts that it regularises.
     """
 
     def __init__(self, model: Model, scale: float) -> None:
@@ -61,7 +61,7 @@ class ViscousRegularisation(Term):
         """No viscous forces."""
         self.stiffness = self._last = self._speed = 0.0
         self.steps = self._corrections = self._waits = self._tried = 0
-        self.flows = False
+        self.active = False
         self._from: Floats = np.zeros((0, 3))
         self._nodes = np.zeros(0, dtype=PETSc.IntType)
 
@@ -73,7 +73,7 @@ class ViscousRegularisation(Term):
             where: Nodes that viscous forces act on, (nodes,); all if left out.
         """
         self.stop()
-        self.flows = True
+        self.active = True
         nodes = np.arange(self._owned) if where is None else np.flatnonzero(where)
         self._nodes = nodes.astype(PETSc.IntType)
         self._from = u.copy()
@@ -106,7 +106,7 @@ class ViscousRegularisation(Term):
         Raises:
             NotHeldError: They do not come to rest.
         """
-        if not self.flows:
+        if not self.active:
             return False
         if self.stiffness and self.steps == MOST_STEPS:
             raise NotHeldError(
@@ -134,7 +134,7 @@ class ViscousRegularisation(Term):
 
     def soften(self) -> bool:
         """After a step that failed: take a shorter one; whether there is one."""
-        if not self.flows:
+        if not self.active:
             return False
         if self.stiffness:
             self._last *= SHORTER

@@ -135,8 +135,8 @@ class Condensed:
         supports = np.zeros(self._stiffness.shape[0])
         supports[problem.supports.unknowns] = problem.supports.values
         self._system.set_load_factor(supports, self._trial_load)
-        if problem.stabilisation.flow.flows:
-            problem.stabilisation.flow.start(self._nodal(), self._reach.nodes)
+        if problem.stabilisation.regularisation.active:
+            problem.stabilisation.regularisation.start(self._nodal(), self._reach.nodes)
         return self._system
 
     def _fits(self, system: ContactSystem) -> bool:

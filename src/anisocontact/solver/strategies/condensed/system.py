@@ -43,7 +43,7 @@ class ContactSystem(AssembledSystem):
         prescribed: Which unknowns of free rigid bodies are prescribed.
         raw_forces: Forces of contacts and of what bodies are attached to, on all nodes, (n,).
         forces: The same with those of constrained unknowns handed on.
-        way: States that bodies that flow or fall have gone through since the last
+        way: States that bodies that jump or fall have gone through since the last
             `set_load_factor`.
         balance: Forces of the last evaluation, of the unknowns of Newton's method.
         forcing: How precise corrections are.
@@ -229,8 +229,8 @@ class ContactSystem(AssembledSystem):
     @override
     def soften(self) -> bool:
         self._evaluated = None
-        flows = self._stabilisation.flow.flows
-        return not (flows and self.outgrown) and super().soften()
+        regularised = self._stabilisation.regularisation.active
+        return not (regularised and self.outgrown) and super().soften()
 
     def mult(self, _: Mat, x: Vec, y: Vec) -> None:
         """Product with the tangent, for PETSc."""
