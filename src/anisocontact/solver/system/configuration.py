@@ -1,4 +1,4 @@
-"""Where the bodies are."""
+"""The current configuration of the bodies, at a state of all unknowns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who answers for the bulk of a problem: all of it, or what can be touched of it."""
+"""The bulk of a problem as it is solved for: all unknowns, or condensed on those of contact."""
 
 from __future__ import annotations
 

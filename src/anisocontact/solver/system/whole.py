@@ -1,4 +1,4 @@
-"""States of all unknowns, and those of which a checkpoint has no interior yet."""
+"""The bulk with all unknowns, not condensed; a checkpoint may lack its interior at first."""
 
 from __future__ import annotations
 
