@@ -303,7 +303,10 @@ def test_what_fails_for_a_reason_of_its_own_is_told_as_well() -> None:
     assert reason_of("gone", False, [unsure]) == "gone; loads"
     assert reason_of("inside out", True, [sure]) == "loads; inside out"
     failed = NewtonResult(20, [1.0, 1e-9], "turned by 16.7 degrees")
-    assert [Outcome(failed, refused=refused).grave for refused in (True, False)] == [True, False]
+    assert [Outcome(failed, refused=refused).conclusive for refused in (True, False)] == [
+        True,
+        False,
+    ]
 
 
 def test_a_body_that_slides_up_a_bowl_is_not_told_that_friction_cannot_hold_it() -> None:

@@ -37,13 +37,13 @@ LEAST_SHARE = 1.0 / 64.0
 #: Sub-increments in a row, each smaller than the one before, whose loads throw bodies farther than
 #: all is long: beyond that no smaller load is held either.
 FLOWN = 3
-#: Kinds of culprits, the gravest first.
-GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
+#: Kinds of culprits, the most severe first.
+SEVERITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
 #: Kinds that explain a failure by themselves; cells that are inverted do in an equilibrium that is
 #: refused, and where corrections go too far they do not.
-GRAVE = GRAVITY[:2]
+CONCLUSIVE = SEVERITY[:2]
 #: Kinds that shares of corrections do not help against.
-PLAIN = {"law", "inverted"}
+NEVER_DAMPED = {"law", "inverted"}
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,9 @@ class Outcome:
     ahead: Vec | None = None
 
     @property
-    def grave(self) -> bool:
+    def conclusive(self) -> bool:
         """Whether the failure is explained by itself, whatever loads there are."""
-        return self.refused or any(culprit.kind in GRAVE for culprit in self.culprits)
+        return self.refused or any(culprit.kind in CONCLUSIVE for culprit in self.culprits)
 
     @property
     def iterations(self) -> int:
@@ -198,10 +198,10 @@ class Attempts:
                 return Outcome(replace(result, iterations=spent), ahead=self._ahead)
             # a regularised attempt without culprits says nothing of what was in the way
             if not way.regularised or result.culprits:
-                failed, found = result.reason, _graver(found, culprits)
+                failed, found = result.reason, _more_severe(found, culprits)
             far |= result.far > 0.0
             seen |= {culprit.kind for culprit in culprits}
-            alternates = "flipping" in seen and not seen & PLAIN
+            alternates = "flipping" in seen and not seen & NEVER_DAMPED
             if way is ways[-1] and not self._final and (alternates or control.tiny or overloaded):
                 ways += self._last_resorts(way, control.small or overloaded)
         reason = _reason(failed, found, self._problem.contacts)
@@ -359,12 +359,12 @@ def _following(
     return [*begun, *ways, replace(last, multipliers=SOFTER, damped=True)]
 
 
-def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
-    """The graver one of two findings, the later one of equals."""
+def _more_severe(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
+    """The more severe one of two findings, the later one of equals."""
     if not before or not now:
         return now or before
-    grave = GRAVITY.index
-    return now if grave(now[0].kind) <= grave(before[0].kind) else before
+    rank = SEVERITY.index
+    return now if rank(now[0].kind) <= rank(before[0].kind) else before
 
 
 def _reason(reason: str, culprits: list[Culprit], contacts: Sequence[Contact]) -> str:

@@ -22,7 +22,7 @@ NAMED = 5
 
 
 def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> list[Culprit]:
-    """Places that caused a failure, of the gravest kind that there is.
+    """Places that caused a failure, of the most severe kind that there is.
 
     Args:
         problem: The problem as the last evaluation left it.

@@ -74,7 +74,7 @@ class Failures:
         """
         outcome = place.lost or outcome
         culprits, found = outcome.culprits, self._overloads(step, place)
-        reason = reason_of(outcome.result.reason, outcome.grave, found)
+        reason = reason_of(outcome.result.reason, outcome.conclusive, found)
         if outcome.result.reason not in reason:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])

@@ -164,17 +164,17 @@ def least_halved(found: Sequence[Overload]) -> float:
     return CLOSER if any(one.pressed for one in found) else LESS_SURE
 
 
-def reason_of(attempt: str, grave: bool, found: Sequence[Overload]) -> str:
+def reason_of(attempt: str, conclusive: bool, found: Sequence[Overload]) -> str:
     """What is told of a step that stops: loads alone where nothing else can be the reason.
 
     Args:
         attempt: Why the last attempt failed.
-        grave: Whether that needs no overload to happen, such as inverted cells.
+        conclusive: Whether that needs no overload to happen, such as inverted cells.
         found: Loads that friction does not hold.
     """
     texts = [one.text for one in found]
     if any(one.certain for one in found):
-        return "; ".join([*texts, attempt] if grave else texts)
+        return "; ".join([*texts, attempt] if conclusive else texts)
     return "; ".join([attempt, *texts])
 
 
