@@ -301,6 +301,39 @@ def test_any_function_of_the_problem():
     assert last.time == pytest.approx(0.4, rel=1e-3)
 
 
+@pytest.mark.parametrize("of", ["reactions", "support_forces", "inner_forces"])
+def test_forces_of_a_function_are_those_of_the_trial(of: str):
+    """The force of a bar that yields, asked of the problem by a script, in three increments.
+
+    Requirement: strain s/E + (s - Y)/H to 1e-5 at s = 8, Y = 5. Source: uniaxial plasticity with
+    linear hardening. Tolerance: 1e-6 of the event over the slope of the stress. Forces of the state
+    accepted before ended the step an increment late, at another force than was said.
+    """
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    metal = make_material("plastic", E=E, nu=NU, yield_stress=5.0, hardening=100.0)
+    planes = ["bar.left", "bar.front", "bar.bottom"]
+    problem = Problem(model, {"bar": metal}, symmetry=planes)
+    top = model.nodes("bar.top")
+
+    def force(of_bar: Problem, trial: bool) -> float:
+        if of == "reactions":
+            return float(of_bar.reactions().get("bar.top", np.zeros(3))[2])
+        return abs(float(getattr(of_bar, of)()[top, 2].sum()))
+
+    until = Until(measure=force, value=8.0, tolerance=1e-6)
+    last = run(problem, Step("pull", 3, {"bar.top": {"z": 0.1}}, until=until))[-1]
+    assert last.event
+    assert last.reactions["bar.top"][2] == pytest.approx(8.0, rel=1e-5)
+    assert 0.1 * last.time == pytest.approx(8.0 / E + 3.0 / 100.0, rel=1e-5)
+
+
+def test_a_trial_has_no_energies():
+    """Requirement: one line."""
+    until = Until(measure=lambda of, trial: of.energies()["elastic"], value=0.1, name="energy")
+    with pytest.raises(InputError, match=r"Until\.measure: a trial has no energies yet"):
+        run(block(), Step("press", 2, PRESS, until=until))
+
+
 def test_loads_stay_where_the_event_found_them():
     """A traction that presses until the top has moved by a distance, released after that.
 

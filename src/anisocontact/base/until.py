@@ -36,7 +36,9 @@ class Until:
         displacement: Facet group, or points and edges with a name: their mean displacement.
         measure: A function of the problem and of whether its state, which `problem.u` has, is a
             trial in equilibrium or the accepted one; it returns a number, the same on all
-            processes. `anisocontact.results.probes.Peak` is one, of what probes see.
+            processes. Reactions and other forces of the problem are those of that state, contacts
+            have `last` of the accepted one. `anisocontact.results.probes.Peak` is one, of what
+            probes see.
         event: One of "closed", "lost", "slipping", "sliding"; where that is so already it has to
             cease first.
         value: Force, displacement, or number of `measure` that is reached from either side.

@@ -260,7 +260,8 @@ def _of_problem(problem: Problem, until: Until, x: Vec | None, field: str) -> fl
     if x is not None:
         problem.evaluate_at(x)
     field = f"{field}.measure"
-    found = called(until.measure, problem, x is not None, who=until.name, field=field)
+    with problem.asked_at(x):
+        found = called(until.measure, problem, x is not None, who=until.name, field=field)
     value = float(answered(found, (), until.name, field))
     if not math.isfinite(value):
         raise InputError(f"{until.name} returned {value}, a finite number needed", field)

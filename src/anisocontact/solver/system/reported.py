@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -66,6 +69,20 @@ class ReportedSystem(AssembledSystem):
     reduction: Reduction
     _bodies: Configuration
     _accepted: AcceptedState
+    _trial: Vec | None = None
+
+    @contextmanager
+    def asked_at(self, x: Vec | None) -> Iterator[None]:
+        """Let forces and displacements be those of a trial while a function of a script looks.
+
+        Args:
+            x: All unknowns of the trial in equilibrium, evaluated; None for the accepted state.
+        """
+        self._trial = x
+        try:
+            yield
+        finally:
+            self._trial = None
 
     @property
     def outside(self) -> Floats:
@@ -84,6 +101,7 @@ class ReportedSystem(AssembledSystem):
         Args:
             x: All unknowns of the trial in equilibrium; the accepted state if not given.
         """
+        x = self._trial if x is None else x
         sums = self.reduction.reactions(x)
         nodal = self._bodies.nodal if x is None else self.reduction.nodal(x)
         for name, force in self.attached.reactions(nodal, trial=x is not None).items():
@@ -92,6 +110,8 @@ class ReportedSystem(AssembledSystem):
 
     def inner_forces(self) -> Floats:
         """Internal force on the nodes this rank owns, accepted state, (nodes, 3), force."""
+        if self._trial is not None:
+            return self.assembly.bodies.internal_force(self._bodies.nodal).reshape(-1, 3)
         self.reduction.recover()
         return self.assembly.bodies.accepted_internal_force(self._bodies.nodal).reshape(-1, 3)
 
@@ -102,6 +122,8 @@ class ReportedSystem(AssembledSystem):
         """
         self.reduction.recover()
         forces = self._accepted.reaction
+        if self._trial is not None:
+            forces = self.balance.outside - self.balance.load
         if self.attached.supports:
             forces = forces + self.layout.assembled(
                 self.attached.supports.force(self._bodies.nodal)
@@ -115,7 +137,7 @@ class ReportedSystem(AssembledSystem):
             group: Its name.
             weights: Share of each local node in the mean, (nodes,).
         """
-        return self.reduction.mean(group, weights)
+        return self.reduction.mean(group, weights, self._trial)
 
     def energies(self) -> Energies:
         """Energies of the accepted state, force times length.
@@ -128,7 +150,13 @@ class ReportedSystem(AssembledSystem):
             "regularisation" has dissipated on jumps and, where there are any, energy of "springs"
             and elastic supports, what materials have dissipated, "inelastic", and "residual", what
             is left of "external" less all others: the error of the increments.
+
+        Raises:
+            InputError: A function of a script asks for those of a trial.
         """
+        if self._trial is not None:
+            text = "a trial has no energies yet: events wait for forces, displacements or stresses"
+            raise InputError(text, "Until.measure")
         elastic = self.reduction.elastic() if self.assembly.bodies.bulk.stores else math.nan
         stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": elastic}
         stored |= self.assembly.bodies.dissipated()
