@@ -11,7 +11,9 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from tests.unit.decks import CUBE, case_of, read
 
 from anisocontact.base.errors import InputError
+from anisocontact.mesh.readers import file_arrays
 
+PLACES = [(x + 5, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
 PAIR = """*SURFACE INTERACTION, NAME=I
 *FRICTION
 0.3
@@ -79,6 +81,54 @@ def test_gravity_of_some_bodies_is_said(tmp_path: Path) -> None:
     case, left = case_of(tmp_path, _two_instances() + load.format(f"{one}\n{other}, 1."))
     assert case["step"][0]["gravity"] == {"x": 2.0}
     assert any("GRAV on up.set-1 is not that of other bodies, one is for all" in x for x in left)
+
+
+def test_sheets_of_two_thicknesses_are_said(tmp_path: Path) -> None:
+    """Requirement: a mesh in the plane has one thickness, that of the first section."""
+    text = """*NODE
+1, 0, 0
+2, 1, 0
+3, 1, 1
+4, 0, 1
+5, 2, 0
+6, 3, 0
+7, 3, 1
+8, 2, 1
+*ELEMENT, TYPE=CPS4, ELSET=A
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPS4, ELSET=B
+2, 5, 6, 7, 8
+*MATERIAL, NAME=M
+*ELASTIC
+1., 0.
+*SOLID SECTION, ELSET=A, MATERIAL=M
+0.5
+*SOLID SECTION, ELSET=B, MATERIAL=M
+{}
+"""
+    for given, said in (("0.5", ""), ("0.25", "b has 0.25"), ("", "b has 1")):
+        case, left = case_of(tmp_path, text.format(given))
+        assert case["idealisation"] == {"kind": "plane-stress", "thickness": 0.5}
+        assert left == ([f"thickness: it is 0.5 of all bodies, {said}"] if said else [])
+
+
+def test_elements_without_a_section_are_said(tmp_path: Path) -> None:
+    """Requirement: what is no body of the case is told by `convert`, and by `check` of the deck;
+    a second material of one name, too."""
+    text = CUBE + "*ELEMENT, TYPE=C3D8R, ELSET=More\n7, 11, 12, 13, 14, 15, 16, 17, 18\n*NODE\n"
+    text += "".join(f"{n + 10}, {x}, {y}, {z}\n" for n, (x, y, z) in enumerate(PLACES, 1))
+    text += "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n*MATERIAL, NAME=m\n*DENSITY\n3.\n"
+    said = "1 elements, as 7, are in no *SOLID SECTION: left out"
+    case, left = case_of(tmp_path, text)
+    assert said in left
+    assert case["material"] == {"set-1": {"model": "linear-elastic", "E": 1, "nu": 0, "density": 3}}
+    assert sum("there is one of this name already" in one for one in left) == 1
+    assert said in file_arrays(tmp_path / "deck.inp", field="").notes
+    _, left = case_of(
+        tmp_path,
+        text.replace("*MATERIAL, NAME=M", "*SOLID SECTION, ELSET=More\n*MATERIAL, NAME=M", 1),
+    )
+    assert said not in left
 
 
 def test_instances_of_one_name_are_refused(tmp_path: Path) -> None:

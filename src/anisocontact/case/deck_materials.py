@@ -87,6 +87,10 @@ class Materials:
 
     def read_material(self, card: Card) -> None:
         """Take `*MATERIAL`; what follows is of it."""
+        if card.option("NAME").upper() in self._models:
+            self._leave(
+                card, ": there is one of this name already; what both say is taken together"
+            )
         self._model = self._models.setdefault(card.option("NAME").upper(), {})
 
     def read_elastic(self, card: Card) -> None:

@@ -22,7 +22,7 @@ from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import PLANE, Deck
 from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import key_of, written
-from anisocontact.mesh.inp import ideals, named_in
+from anisocontact.mesh.inp import ideals, named_in, without_section
 from anisocontact.mesh.readers import file_arrays
 
 #: Keywords that ask for output or say nothing that a case needs.
@@ -160,6 +160,8 @@ class _Case:
         """Lines on elements that are no solids, and on options of cards that are taken over."""
         for kind, count in self.deck.left_out.items():
             self.left_out.append(f"{count} elements {kind}: they are no solids")
+        if lost := without_section(self.deck):
+            self.left_out.append(lost)
         for card, why in unread_options(cards):
             if not any(line.startswith(_of(card) + ":") for line in self.left_out):
                 self._leave(card, why)
@@ -215,8 +217,16 @@ class _Case:
 
     def _ideal(self, kinds: set[str]) -> dict[str, object]:
         (kind,) = ideals(kinds)
-        thick = [real(one.thickness) for one in self.deck.sections.values() if one.thickness]
-        return {"kind": kind} | ({"thickness": thick[0]} if thick and kind[:5] == "plane" else {})
+        if kind[:5] != "plane":
+            return {"kind": kind}
+        thick = {name: real(one.thickness or "1") for name, one in self.deck.sections.items()}
+        first = next(iter(thick.values()), 1.0)
+        others = [
+            f"{name.lower()} has {value:g}" for name, value in thick.items() if value != first
+        ]
+        if others:
+            self.left_out.append(f"thickness: it is {first:g} of all bodies, {', '.join(others)}")
+        return {"kind": kind} | ({"thickness": first} if first != 1.0 else {})
 
     def _of_body(self, body: str) -> dict[str, object]:
         """Table of the material of a body; without a model where the deck has none that is read."""

@@ -111,10 +111,22 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
     return mesh
 
 
+def without_section(deck: Deck) -> str:
+    """Line on solids that no section names, which are no body; empty if there are none."""
+    bodies, kinds = bodies_of(deck), {kind for kind, _ in deck.elements.values()}
+    taken = set(SOLIDS) if kinds & set(SOLIDS) else kinds
+    lost = [n for n, (kind, _) in deck.elements.items() if kind in taken and n not in bodies]
+    if not lost:
+        return ""
+    return f"{len(lost)} elements, as {deck.told(lost[0])}, are in no *SOLID SECTION: left out"
+
+
 def _odd(deck: Deck, mesh: WholeMesh) -> Iterator[str]:
     """What is legal in a deck and hardly meant."""
     if deck.moved:
         yield f"{deck.moved} nodes are given once more, at another place: the last one counts"
+    if lost := without_section(deck):
+        yield lost
     if deck.absent and not deck.left_out:  # elements that are not read take their sets along
         yield f"sets name others that are not there: {', '.join(sorted(deck.absent))}"
     for name, faces in mesh.surfaces.items():
