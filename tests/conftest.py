@@ -237,6 +237,17 @@ def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("anisocontact.results.report_process.report_beside", lambda wanted: none)
 
 
+@pytest.fixture
+def no_detours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Penalties are come to in no other way: what takes too many corrections fails."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    from anisocontact.solver.stepping.compliant_penalties import CompliantPenalties
+    from anisocontact.solver.stepping.graded_penalties import GradedPenalties
+
+    for kind in (CompliantPenalties, GradedPenalties):
+        monkeypatch.setattr(kind, "contacts", [])
+
+
 @pytest.fixture(scope="session")
 def fe() -> FiniteElements:
     """Builders of small contact problems; skips where DOLFINx is not installed."""

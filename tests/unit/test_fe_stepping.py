@@ -17,8 +17,8 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
 from anisocontact.solver.stepping.acceptance import INVERTED
-from anisocontact.solver.stepping.attempts import _reason
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
+from anisocontact.solver.stepping.failure_reasons import explained
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.status_watch import StatusWatch
 from anisocontact.solver.stepping.turn_watch import TurnWatch
@@ -113,15 +113,12 @@ def test_what_fails_again_and_again_is_tried_more_and_more_seldom():
     assert len(sizes) < 30
 
 
-def test_an_increment_that_fails_is_solved_in_parts(fe, monkeypatch):
-    """Four iterations are enough for a part of the drag, not for the whole, without soft penalties.
+def test_an_increment_that_fails_is_solved_in_parts(fe, no_detours):
+    """Four iterations are enough for a part of the drag, not for the whole, without detours.
 
     Requirement: cut back on failure, output times met exactly, each cut told with its reason. The
     path is the one of more increments: its end agrees with 32 of them to the error of the parts.
     """
-    from anisocontact.solver.stepping.graded_penalties import GradedPenalties
-
-    monkeypatch.setattr(GradedPenalties, "contacts", [])
     block = fe.block(fe.interface(), cells=(3, 3, 2))
     accepted, cuts = solved(block, Step("press", 2, PRESS), Step("drag", 2, DRAG), snes_max_it=4)
     assert len(cuts) > 0
@@ -214,9 +211,9 @@ def test_corrections_that_invert_cells_are_no_equilibrium() -> None:
     Such an iterate says nothing of how distorted the cells are; a state in equilibrium does.
     """
     found = [Culprit("inverted", (0.0, 0.0, 0.0), "the cell here is inverted")]
-    told = _reason("the residual is not a number", found, [])
+    told = explained("the residual is not a number", found, [])
     assert told == "the residual is not a number; cells are inverted (det F <= 0) by corrections"
-    assert _reason(INVERTED, found, []) == "cells are inverted (det F <= 0)"
+    assert explained(INVERTED, found, []) == "cells are inverted (det F <= 0)"
 
 
 def _touching(points: int) -> Any:
@@ -260,9 +257,9 @@ def test_points_at_the_border_of_the_master_are_named():
     found = [
         Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=bool(b)) for b in watch.on_border(0)
     ]
-    told = _reason("no convergence", found, [])
+    told = explained("no convergence", found, [])
     assert "2 slave points alternates (chattering), 1 of them at the border" in told
-    assert "border" not in _reason("no convergence", found[:1], [])
+    assert "border" not in explained("no convergence", found[:1], [])
 
 
 @pytest.mark.parametrize(
@@ -280,7 +277,7 @@ def test_advice_at_a_border_is_what_the_contact_can_have(meshed, nodes, advice):
     contact = SimpleNamespace(name="sole", of_two_groups=meshed, slave_points=points)
     found = [Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=True)]
     other = SimpleNamespace(name="lid", of_two_groups=False, slave_points=points)
-    assert _reason("gone", found, [contact, other]).endswith(f"border of the master{advice}")
+    assert explained("gone", found, [contact, other]).endswith(f"border of the master{advice}")
 
 
 def sticky(interface, most=10.0, width=1e-5):

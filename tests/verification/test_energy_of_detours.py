@@ -11,7 +11,7 @@ from tests.verification.free_blocks import YOUNG, free_block, laws
 from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
-from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES
+from anisocontact.contact.multiplier_schemes import COMPLIANT, GRADED, IN_CYCLES
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import BoxSpec, build_box
@@ -32,13 +32,22 @@ def _augmented_block(gap: float) -> Problem:
 
 
 @pytest.mark.parametrize(
-    ("gap", "only"),
-    [(0.0, ""), (0.1, ""), (1.0, ""), (0.0, GRADED), (0.1, GRADED), (0.1, IN_CYCLES)],
+    ("gap", "only", "augmented"),
+    [
+        (0.0, GRADED, False),
+        (0.1, GRADED, False),
+        (1.0, GRADED, False),
+        (0.0, COMPLIANT, False),
+        (0.1, COMPLIANT, False),
+        (0.0, GRADED, True),
+        (0.1, GRADED, True),
+        (0.1, IN_CYCLES, True),
+    ],
 )
 def test_soft_penalties_on_the_way_do_no_work(
-    gap: float, only: str, monkeypatch: pytest.MonkeyPatch
+    gap: float, only: str, augmented: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All attempts fail but that by way of softer penalties, or of multipliers in cycles.
+    """All attempts fail but that by way of softer penalties, or of multipliers, also in cycles.
 
     Requirement: bodies have sunk into penalties of a ten-thousandth by ways that they do not take:
     neither loads nor friction do work there, and what a fall sets free is told as energy. Source:
@@ -48,16 +57,15 @@ def test_soft_penalties_on_the_way_do_no_work(
     """
     as_it_is = Attempts._correct
 
-    def graded(attempts: Attempts, way: Any, x: Vec) -> NewtonResult:
-        taken = way.multipliers == only if only else way.graded
-        return as_it_is(attempts, way, x) if taken else NewtonResult(1, [1.0], "refused")
+    def one_way(attempts: Attempts, way: Any, x: Vec) -> NewtonResult:
+        return as_it_is(attempts, way, x) if way.way == only else NewtonResult(1, [1.0], "refused")
 
-    monkeypatch.setattr(Attempts, "_correct", graded)
+    monkeypatch.setattr(Attempts, "_correct", one_way)
     steps = [
         Step("press", 1, traction={"block.top": {"x": 2.0, "z": -10.0}}),
         Step("shear", 1, traction={"block.top": {"x": 2.5}}),
     ]
-    for accepted in Solver(_augmented_block(gap) if only else free_block(gap), steps).run():
+    for accepted in Solver(_augmented_block(gap) if augmented else free_block(gap), steps).run():
         energies = accepted.energies
         work, left = energies["external"], energies["residual"]
         assert abs(left) < 3e-3 * work

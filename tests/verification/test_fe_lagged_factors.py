@@ -26,7 +26,7 @@ from tests.verification.test_fe_lagged import (
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
-from anisocontact.contact.multiplier_schemes import USUAL
+from anisocontact.contact.multiplier_schemes import COMPLIANT, GRADED, USUAL
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
 from anisocontact.solver import Problem, Solver, Step
@@ -125,7 +125,8 @@ def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
     assert len(attempts._apart(searching, full)) == count
     for start, ways in ((searching, count), (replace(searching, ratio=1.0), 2)):
         found = attempts._ways(start, full, USUAL)
-        assert [way.graded for way in found] == [False] * ways + [True]
+        others = [""] * (ways - 1)
+        assert [way.detour for way in found] == ["", COMPLIANT, *others, GRADED]
 
 
 def test_a_factor_that_is_made_again_goes_on_as_the_first_one() -> None:

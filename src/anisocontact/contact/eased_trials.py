@@ -22,11 +22,13 @@ class EasedTrials(Trials):
 
     @property
     def penalised(self) -> bool:
-        """Whether penalties alone hold where multipliers could follow: nodes have one each.
+        """Whether penalties alone hold where multipliers could follow."""
+        return self.multipliers.penalised
 
-        Integration points are too many for that.
-        """
-        return self._points.at_nodes and self.multipliers.penalised
+    @property
+    def at_nodes(self) -> bool:
+        """Whether the points are nodes, which have one multiplier each; others are many more."""
+        return self._points.at_nodes
 
     @property
     def by_penalty(self) -> bool:

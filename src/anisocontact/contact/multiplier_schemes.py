@@ -21,10 +21,10 @@ from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentatio
 #: Schemes of an increment, the usual one and what is tried where that fails: with smaller
 #: penalties, with those of slender bodies, in cycles, in such that begin with soft penalties, of
 #: slender bodies too, with points that close one at a time, and with penalties alone where
-#: multipliers are not required.
+#: multipliers are not required. Penalties are come to by multipliers with their compliance.
 USUAL, SOFTER, IN_CYCLES, GRADED = "usual", "softer", "in cycles", "graded"
 SLENDER, GRADED_SLENDER, SINGLY = "slender", "graded slender", "singly"
-PENALTIES = "penalties"
+PENALTIES, COMPLIANT = "penalties", "compliant"
 
 #: Their classes, by `Augmentation.multipliers`.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
@@ -131,7 +131,7 @@ class MultiplierSchemes:
         return self.taken is None and augmentable(self._law)
 
     def comply(self, stiffness: float, size: float) -> None:
-        """Take the scheme that leads to stiff penalties, see `Compliant`.
+        """Take the scheme that leads to penalties, see `Compliant`.
 
         Args:
             stiffness: Of the bodies, stress/length.

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.contact import Contact
 from anisocontact.contact.multiplier_schemes import (
+    COMPLIANT,
     GRADED,
     GRADED_SLENDER,
     IN_CYCLES,
@@ -18,10 +18,12 @@ from anisocontact.contact.multiplier_schemes import (
     USUAL,
 )
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.solver.stepping.acceptance import INVERTED, Refusal, refused
-from anisocontact.solver.stepping.continuation import Continuation
+from anisocontact.solver.stepping.acceptance import Refusal, refused
+from anisocontact.solver.stepping.compliant_penalties import CompliantPenalties
+from anisocontact.solver.stepping.continuation import LAYERED, Continuation
 from anisocontact.solver.stepping.convergence_diagnostics import failed_point, find_culprits
 from anisocontact.solver.stepping.events import EventWatch
+from anisocontact.solver.stepping.failure_reasons import CONCLUSIVE, explained, more_severe
 from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.overload import Overload
@@ -37,11 +39,6 @@ LEAST_SHARE = 1.0 / 64.0
 #: Sub-increments in a row, each smaller than the one before, whose loads throw bodies farther than
 #: all is long: beyond that no smaller load is held either.
 FLOWN = 3
-#: Kinds of culprits, the most severe first.
-SEVERITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
-#: Kinds that explain a failure by themselves; cells that are inverted do in an equilibrium that is
-#: refused, and where corrections go too far they do not.
-CONCLUSIVE = SEVERITY[:2]
 #: Kinds that shares of corrections do not help against.
 NEVER_DAMPED = {"law", "inverted"}
 
@@ -96,8 +93,8 @@ class _Attempt:
         regularised: Whether viscous forces act, see `ViscousRegularisation`.
         multipliers: Way to the multipliers of augmented contacts.
         spare: Whether its failure says nothing of what holds the bodies.
-        layered: Whether stiff laws are come to by way of what is easier, see `Continuation`.
-        graded: Whether penalties are raised from soft ones, see `GradedPenalties`.
+        detour: What is solved before the laws as they are: `LAYERED`, see `Continuation`,
+            `COMPLIANT`, `GRADED`, see `CompliantPenalties`, `GradedPenalties`, or nothing.
     """
 
     start: Vec
@@ -107,13 +104,12 @@ class _Attempt:
     regularised: bool = False
     multipliers: str = USUAL
     spare: bool = False
-    layered: bool = False
-    graded: bool = False
+    detour: str = ""
 
     @property
     def way(self) -> str:
         """Scheme of the multipliers, or how penalties are come to."""
-        return GRADED if self.graded else self.multipliers
+        return self.detour or self.multipliers
 
 
 class Attempts:
@@ -123,10 +119,11 @@ class Attempts:
     accepted state with full steps: a line search stops in front of a jump of the law. Both are one
     where nothing is extrapolated and pressures of cells follow corrections in full steps. Where
     adhesion is stiff one with compliant layers comes between them, where penalties are one with
-    multipliers before them, see `Continuation`. Other penalties are raised from soft ones where
-    both fail, see `GradedPenalties`, and from then on where the first does. Where the status of
-    points alternated, a further one takes a share of each correction: half as much as before where
-    it still alternates, twice as much where it does not. Where that does not help either and the
+    multipliers before them, see `Continuation`. Other penalties are come to by way of multipliers
+    between them, see `CompliantPenalties`, and raised from soft ones where both fail, see
+    `GradedPenalties`, and from then on where the first does. Where the status of points alternated,
+    a further one takes a share of each correction: half as much as before where it still
+    alternates, twice as much where it does not. Where that does not help either and the
     sub-increment is small, the last one regularises, see `ViscousRegularisation`. Where a
     sub-increment is tiny, both are tried whatever was in the way. Where multipliers are not
     required and a cut did not lead to them, penalties come before these last ones. Where contact
@@ -155,7 +152,13 @@ class Attempts:
         self._failed: FailedPoint | None = None
         self._ahead: Vec | None = None
         self._continuation = Continuation(problem, newton)
+        self._compliant = CompliantPenalties(problem.contacts, newton)
         self._graded = GradedPenalties(problem.contacts, newton)
+        self._detours = {
+            LAYERED: self._continuation.solve,
+            COMPLIANT: self._compliant.solve,
+            GRADED: self._graded.solve,
+        }
 
     def solve(
         self,
@@ -198,13 +201,13 @@ class Attempts:
                 return Outcome(replace(result, iterations=spent), ahead=self._ahead)
             # a regularised attempt without culprits says nothing of what was in the way
             if not way.regularised or result.culprits:
-                failed, found = result.reason, _more_severe(found, culprits)
+                failed, found = result.reason, more_severe(found, culprits)
             far |= result.far > 0.0
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & NEVER_DAMPED
             if way is ways[-1] and not self._final and (alternates or control.tiny or overloaded):
                 ways += self._last_resorts(way, control.small or overloaded)
-        reason = _reason(failed, found, self._problem.contacts)
+        reason = explained(failed, found, self._problem.contacts)
         result = replace(result, iterations=spent, reason=reason)
         hint = self._continuation.hint()
         self._flown = self._flown + 1 if far else 0
@@ -224,7 +227,7 @@ class Attempts:
 
     def _ways(self, searching: _Attempt, full: _Attempt, led: str) -> list[_Attempt]:
         trusts = self._problem.stabilisation.trusts
-        stiff, layered = self._continuation.stiff(), replace(full, layered=True)
+        stiff, layered = self._continuation.stiff(), replace(full, detour=LAYERED)
         if self._problem.contact_term.simultaneous:
             cycles = IN_CYCLES in self._problem.contact_term.ways
             schemes = [USUAL, SOFTER]
@@ -241,9 +244,16 @@ class Attempts:
             if stiff and self._continuation.easy:
                 return [*[layered] * (2 if trusts else 1), *both]
             ways = [both[0], *both] if trusts else both
-            if not stiff and self._graded.contacts:
-                graded = replace(full, graded=True)
-                ways.insert(1 if led == GRADED else len(ways), graded)
+            if not stiff:
+                # slender bodies, which bend, are led to penalties from soft ones or not at all
+                suits = self._problem.contact_term.compact and self._compliant.contacts
+                places = {
+                    COMPLIANT: (suits, max(1, len(ways) - 1)),
+                    GRADED: (self._graded.contacts, len(ways) + 1),
+                }
+                for detour, (contacts, place) in places.items():
+                    if contacts:
+                        ways.insert(1 if led == detour else place, replace(full, detour=detour))
         if stiff:
             ways.insert(2 if trusts else 1, layered)
         return ways
@@ -255,7 +265,7 @@ class Attempts:
     def _last_resorts(self, failed: _Attempt, may_jump: bool) -> list[_Attempt]:
         """What is left to be tried where the status of points alternates, or sizes are tiny."""
         if not failed.damped and not failed.regularised:
-            return [replace(failed, damped=True, graded=False)]
+            return [replace(failed, damped=True, detour="")]
         if may_jump and self._problem.stabilisation.enabled and not failed.regularised:
             # on the way from one contact to another multipliers are found with smaller penalties
             follows = SOFTER in self._problem.contact_term.ways
@@ -296,10 +306,8 @@ class Attempts:
             problem.stabilisation.regularisation.start(problem.nodal)
         problem.contact_term.take_way(way.multipliers)
         problem.contact_term.predict(way.ratio)
-        if way.layered:
-            return self._continuation.solve(x)
-        if way.graded:
-            return self._graded.solve(x)
+        if way.detour:
+            return self._detours[way.detour](x)
         damping = self._damping if way.damped else None
         return self._newton.solve(x, way.full_steps, damping)
 
@@ -357,39 +365,3 @@ def _following(
     if first.start is not last.start:
         ways.append(replace(last, multipliers=again.multipliers))
     return [*begun, *ways, replace(last, multipliers=SOFTER, damped=True)]
-
-
-def _more_severe(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
-    """The more severe one of two findings, the later one of equals."""
-    if not before or not now:
-        return now or before
-    rank = SEVERITY.index
-    return now if rank(now[0].kind) <= rank(before[0].kind) else before
-
-
-def _reason(reason: str, culprits: list[Culprit], contacts: Sequence[Contact]) -> str:
-    """Why it failed, by what caused it."""
-    kind = culprits[0].kind if culprits else ""
-    if kind == "law":
-        return culprits[0].why
-    if kind == "inverted":
-        # an equilibrium that is none, or a correction too far, which tells nothing of the cells
-        return reason if reason == INVERTED else f"{reason}; {INVERTED} by corrections"
-    if kind == "flipping":
-        told = f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
-        border = [culprit.contact for culprit in culprits if culprit.border]
-        if not border:
-            return told
-        advice = _advice([one for one in contacts if one.name in border])
-        return f"{told}, {len(border)} of them at the border of the master{advice}"
-    if kind == "hopping":
-        return f"{reason}; {len(culprits)} slave points alternate between facets"
-    return reason
-
-
-def _advice(contacts: Sequence[Contact]) -> str:
-    """What helps where points go over the border of the master: what these contacts can have."""
-    sides = all(contact.of_two_groups for contact in contacts)
-    points = not any(contact.slave_points.at_nodes for contact in contacts)
-    ways = ["take the other side as the slave"] * sides + ["take the pass mortar"] * points
-    return f": {' or '.join(ways)}" if ways else ""

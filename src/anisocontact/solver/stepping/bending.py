@@ -17,15 +17,16 @@ def bend(problem: Problem) -> bool:
 
     A slender body at finite strain turns by much of what a correction moves it, and that leaves
     gaps which usual penalties take for a contact that opens: nothing would hold it then. The
-    contacts learn whether it is so, whether any body is slender, however it is held, and whether
-    one may yield.
+    contacts learn whether it is so, whether any body is slender, however it is held and whatever
+    contacts hold by, and whether one may yield.
 
     Args:
         problem: The problem, in a step.
     """
     contacts = problem.contact_term
     follows = SLENDER in contacts.ways and not problem.linear
-    contacts.slender = follows and _slender(problem, _of_contacts(problem))
+    contacts.compact = not _slender(problem, _of_contacts(problem))
+    contacts.slender = follows and not contacts.compact
     contacts.bends = contacts.slender and _slender(problem, _held_by_contact(problem))
     contacts.plastic = not _plastic(problem).isdisjoint(_of_contacts(problem))
     return contacts.bends

@@ -17,10 +17,13 @@ from dataclasses import replace
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
+from anisocontact.solver.stepping.compliant_penalties import as_they_are, comply
 from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.problem import Problem
 
+#: Name of the way by what is easier than stiff laws.
+LAYERED = "layered"
 #: Stiffness of penalties or adhesion over that of the bodies beyond which this is tried.
 STIFF = 100.0
 #: Stiffness of the first layer over that of the bodies, where the first try fails a second one, and
@@ -52,9 +55,9 @@ class Continuation:
         return float(contact.trials.interface.penalties()[0] / contact.body_stiffness)
 
     def _by_multipliers(self) -> list[Contact]:
-        """Those whose penalties are."""
-        contacts = self._problem.contacts
-        return [c for c in contacts if c.trials.penalised and self._hardness(c) > STIFF]
+        """Those whose penalties are; at integration points layers and the line search do more."""
+        nodes = [c for c in self._problem.contacts if c.trials.penalised and c.trials.at_nodes]
+        return [c for c in nodes if self._hardness(c) > STIFF]
 
     def _by_layers(self) -> list[Contact]:
         """Others whose adhesion is."""
@@ -98,10 +101,7 @@ class Continuation:
             again = self._softened(x, layered, LAYERS[1], None)
             result = replace(again, iterations=result.iterations + again.iterations)
         self.end()
-        if result.reason:
-            return result
-        final = self._newton.solve(x, full_steps=True)
-        return replace(final, iterations=result.iterations + final.iterations)
+        return as_they_are(result, x, self._newton)
 
     def end(self) -> None:
         """Take all layers away, and multipliers that are a way to penalties."""
@@ -119,8 +119,7 @@ class Continuation:
 
         Each layer is stiffer than the last; without any there is nothing to go on to.
         """
-        for contact in self._by_multipliers():
-            contact.trials.comply(contact.body_stiffness, contact.facet_size)
+        comply(self._by_multipliers())
         if not layered:
             return self._newton.solve(x)
         most, spent = max(self.ratio(contact) for contact in layered), 0

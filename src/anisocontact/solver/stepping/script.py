@@ -21,6 +21,7 @@ from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.contact.multiplier_schemes import GRADED, IN_CYCLES, SLENDER, SOFTER
+from anisocontact.solver.stepping.compliant_penalties import CompliantPenalties
 from anisocontact.solver.stepping.graded_penalties import GradedPenalties
 from anisocontact.solver.stepping.increment_control import IncrementControl
 from anisocontact.solver.stepping.saved_state import own_file, read_arrays, write_arrays
@@ -184,7 +185,7 @@ class ContactProblem(Uncopied):
         return result
 
     def _other_ways(self) -> Iterator[Callable[[Vec], NewtonResult]]:
-        """Ways to multipliers, and to penalties from soft ones."""
+        """Ways to multipliers, and to penalties by multipliers and from soft ones."""
 
         def by_scheme(name: str, x: Vec) -> NewtonResult:
             self.system.contact_term.take_way(name)
@@ -196,9 +197,10 @@ class ContactProblem(Uncopied):
             for one in (SOFTER, SLENDER, GRADED, IN_CYCLES)
             if one in schemes
         )
-        graded = GradedPenalties(self.contacts, self.newton)
-        if graded.contacts:
-            yield graded.solve
+        for kind in (CompliantPenalties, GradedPenalties):
+            detour = kind(self.contacts, self.newton)
+            if detour.contacts:
+                yield detour.solve
 
     @typed
     def solve_steps(

@@ -95,7 +95,7 @@ class ResidualHistory:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
         searches = lately > before or self._slips_on() or lately == 0
-        if searches or self._falls() or self._recedes():
+        if searches or self._falls() or self._recedes() or self._comes_nearer():
             return False
         return _keeps(known) and not (self._contacts.faint and not _keeps(self.violations))
 
@@ -108,6 +108,16 @@ class ResidualHistory:
         known = self.residuals
         halved = len(known) > STUCK_OVER and known[-1] <= STUCK * known[-1 - STUCK_OVER]
         return bool(halved and np.all(np.diff(known[-IDLE_OVER - 1 :]) < 0.0))
+
+    def _comes_nearer(self) -> bool:
+        """Whether each of the last corrections has brought forces nearer to balance than before.
+
+        So it does where an edge of what sticks runs along a body while points behind it change to
+        and fro: in circles it would have to come back.
+        """
+        known = np.array(self.residuals[-IDLE_OVER - 1 :])
+        nearer = bool(np.all(known[1:] < NEARER * known[:-1]))
+        return nearer and known[-1] < min(self.residuals[1:-1])
 
     def _recedes(self) -> bool:
         """Whether ever fewer points touch and the residual falls, by half over the last ones.

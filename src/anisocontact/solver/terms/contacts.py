@@ -27,7 +27,8 @@ class Contacts(Term):
         meshed: Those against facets.
         bends: Whether a body that contact alone holds is so slender that it bends before it is
             strained.
-        slender: Whether any body with a contact is so slender.
+        slender: Whether any body with a contact is so slender, where multipliers can follow that.
+        compact: Whether no body with a contact is so slender.
         plastic: Whether a body with a contact may yield.
     """
 
@@ -38,7 +39,7 @@ class Contacts(Term):
         self.meshed = [contact for contact in self._all if contact.meshed]
         self._smooth = [contact for contact in self._all if not contact.meshed]
         self._dt, self.bends, self.slender = 1.0, False, False
-        self.plastic = False
+        self.plastic, self.compact = False, True
         self._failed = False
 
     @override
