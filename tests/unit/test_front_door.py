@@ -159,6 +159,25 @@ def test_a_step_that_fails_leaves_what_was_accepted(pad, monkeypatch):
         problem.solve_steps(drag(moved), 0)
 
 
+@pytest.mark.parametrize("kind", [KeyboardInterrupt, MemoryError])
+def test_whatever_ends_a_solution_leaves_what_was_accepted(pad, monkeypatch, kind):
+    """Requirement: a script goes on from there also where it was no lack of convergence."""
+    problem, moved, contact = pad()
+    problem.solve_steps(drag(moved), 4)
+    before, (force, _) = problem.u.x.array.copy(), contact.resultant()
+
+    def breaks(x):
+        problem.u.x.array[:] = np.nan
+        raise kind
+
+    with monkeypatch.context() as patch, pytest.raises(kind):
+        patch.setattr(problem.newton, "solve", breaks)
+        problem.solve()
+    assert np.array_equal(problem.u.x.array, before)
+    problem.solve()
+    assert np.allclose(contact.resultant()[0], force, rtol=1e-9)
+
+
 def test_goes_on_from_a_file(pad, tmp_path):
     """Requirement: with the history, sliding goes on as if nothing had come between."""
     path = tmp_path / "state.npz"

@@ -28,8 +28,9 @@ def check_memory(pc: Any) -> None:
     Raises:
         MachineError: There was too little memory.
     """
-    direct = pc.getType() in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY)
-    mumps = direct and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
+    if no_numbers(pc):
+        return  # MUMPS puts off such pivots until its workspace is full
+    mumps = _is_direct(pc) and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
     code = pc.getFactorMatrix().getMumpsInfog(1) if mumps else 0
     if code in _TOO_SMALL:
         raise MachineError(
@@ -39,6 +40,15 @@ def check_memory(pc: Any) -> None:
     if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.FACTOR_OUTMEMORY:
         name = f"MUMPS (INFOG(1) = {code})" if mumps else "PETSc"
         raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
+
+
+def no_numbers(pc: Any) -> bool:
+    """Whether the matrix of a factorisation has values that are not finite; collective."""
+    return _is_direct(pc) and not np.isfinite(pc.getOperators()[1].norm())
+
+
+def _is_direct(pc: Any) -> bool:
+    return pc.getType() in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY)
 
 
 def has_petsc(*functions: str) -> bool:

@@ -149,6 +149,25 @@ class ContactProblem(Uncopied):
         system.check_finite()
         terms.set_load_factor(1.0, dt)
         before = self.u.x.array.copy()
+        try:
+            result = self._try(before)
+        except BaseException:  # an interrupt too: the script may go on from what was accepted
+            self.u.x.array[:] = before
+            terms.roll_back()
+            raise
+        terms.accept(system.nodal)
+        for body in self._bodies:
+            body.commit()
+            body.history_of = self._key
+        return result.iterations
+
+    def _try(self, before: Floats) -> NewtonResult:
+        """The equilibrium from a start, which is not accepted yet.
+
+        Raises:
+            RuntimeError: There is none, or one with a body behind its master.
+        """
+        system = self.system
         x = system.new_vector()
         x.array[:] = before[: x.getLocalSize()]
         system.begin(x)
@@ -160,15 +179,8 @@ class ContactProblem(Uncopied):
             found = system.sides.objection(system.nodal)
             reason = f"contact {found.contact!r}: {found.why}" if found else ""
         if reason:
-            reason = "; ".join(filter(None, [reason, wrong_derivatives(self.contacts)]))
-            self.u.x.array[:] = before
-            terms.roll_back()
-            raise RuntimeError(reason)
-        terms.accept(system.nodal)
-        for body in self._bodies:
-            body.commit()
-            body.history_of = self._key
-        return result.iterations
+            raise RuntimeError("; ".join(filter(None, [reason, wrong_derivatives(self.contacts)])))
+        return result
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method, and other ways where that fails."""
