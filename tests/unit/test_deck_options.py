@@ -83,6 +83,18 @@ def test_gravity_of_some_bodies_is_said(tmp_path: Path) -> None:
     assert any("GRAV on up.set-1 is not that of other bodies, one is for all" in x for x in left)
 
 
+def test_gravity_that_is_given_twice_adds_up(tmp_path: Path) -> None:
+    """Requirement: with what takes it away again, and not across amplitudes."""
+    load = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n*STEP\n*STATIC\n1., 1.\n*DLOAD\n"
+    down, along = "Set-1, GRAV, 2., 0., 0., -1.", "Set-1, GRAV, 3., 1."
+    text = f"{CUBE}*MATERIAL, NAME=M\n{load}{down}\n{along}\n"
+    case, _ = case_of(tmp_path, f"{text}*DLOAD\n{down.replace('-1.', '1.')}\n")
+    assert case["step"][0]["gravity"] == {"x": 3.0, "z": 0.0}
+    case, left = case_of(tmp_path, f"{text}*DLOAD, AMPLITUDE=A\n{down}\n")
+    assert case["step"][0]["gravity"] == {"x": 3.0, "z": -2.0}
+    assert any("two accelerations along z in one step, with different" in one for one in left)
+
+
 def test_sheets_of_two_thicknesses_are_said(tmp_path: Path) -> None:
     """Requirement: a mesh in the plane has one thickness, that of the first section."""
     text = """*NODE

@@ -28,7 +28,7 @@ def check_memory(pc: Any) -> None:
     Raises:
         MachineError: There was too little memory.
     """
-    if no_numbers(pc):
+    if not_finite(pc):
         return  # MUMPS puts off such pivots until its workspace is full
     mumps = _is_direct(pc) and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
     code = pc.getFactorMatrix().getMumpsInfog(1) if mumps else 0
@@ -42,7 +42,7 @@ def check_memory(pc: Any) -> None:
         raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
 
 
-def no_numbers(pc: Any) -> bool:
+def not_finite(pc: Any) -> bool:
     """Whether the matrix of a factorisation has values that are not finite; collective."""
     return _is_direct(pc) and not np.isfinite(pc.getOperators()[1].norm())
 

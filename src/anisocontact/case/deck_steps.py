@@ -141,7 +141,7 @@ class Steps:
         known = groups.get(group, {})
         before = {"": known} if single and group in groups else known
         if key in _SUMMED:
-            now = _added(before, now, f"{key}s on {group}")
+            now = _added(before, now, f"{_SUMMED[key]} {group}")
         groups[group] = now[""] if single else {**before, **now}
 
     def finish(self) -> list[str]:
@@ -381,8 +381,13 @@ _LOADS: dict[str, Callable[[Steps, Card], Iterator[_Load]]] = {
     "DSLOAD": Steps.dsloads,
     "TEMPERATURE": Steps.temperatures,
 }
-#: Keys of a step whose values add up where it gives them twice.
-_SUMMED = ("force", "pressure", "traction")
+#: Keys of a step whose values add up where it gives them twice, as they are told.
+_SUMMED = {
+    "force": "forces on",
+    "pressure": "pressures on",
+    "traction": "tractions on",
+    "gravity": "accelerations along",
+}
 #: Keys of a step that a keyword with OP=NEW begins anew.
 _RENEWED = {
     "BOUNDARY": {"displacement", "cylindrical"},

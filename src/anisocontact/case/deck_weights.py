@@ -34,20 +34,20 @@ class Weights:
             acceleration: Acceleration.
 
         Yields:
-            "gravity", component, acceleration of all bodies of the step that have one so far.
+            "gravity", component, by how much that of all bodies which have one in the step grows.
 
         Raises:
             InputError: Bodies differ.
         """
         given = self._given.setdefault(step, {})
-        for body in self._whole(entry):
-            given[body] = given.get(body, 0.0) + acceleration
-        first, *others = given.values()
-        if any(np.any(other != first) for other in others):
+        before = next(iter(given.values()), np.zeros(3))
+        more = {body: given.get(body, 0.0) + acceleration for body in self._whole(entry)}
+        now, *others = (given | more).values()
+        if any(np.any(other != now) for other in others):
             raise InputError(f"GRAV on {entry.lower()} is not that of other bodies, one is for all")
-        yield from (
-            ("gravity", name, a) for name, a in zip("xyz", first.tolist(), strict=True) if a
-        )
+        given |= more
+        for i in np.flatnonzero((before != 0.0) | (now != 0.0)):
+            yield "gravity", "xyz"[i], float(now[i] - before[i])
 
     def partly(self) -> Iterator[tuple[int, str]]:
         """Number of each step whose gravity is not on all bodies, and what to say of it."""

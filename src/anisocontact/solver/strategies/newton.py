@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc, Vec
-from anisocontact.base.petsc_calls import check_memory, no_numbers
+from anisocontact.base.petsc_calls import check_memory, not_finite
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton_iteration import NewtonIteration
@@ -224,7 +224,7 @@ class Newton:
             # PETSc would say of every later one that it failed, too
             ksp = self.snes.getKSP()
             check_memory(ksp.getPC())
-            if no_numbers(ksp.getPC()):
+            if not_finite(ksp.getPC()):
                 text = "the tangent matrix has values that are not finite"
             ksp.reset()
             ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
