@@ -7,7 +7,7 @@
 
 #include "anisocontact/law/registry.hpp"
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 #include "types.hpp"
 
 namespace anisocontact::bindings {

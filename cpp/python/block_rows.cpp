@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 namespace anisocontact::bindings {
 

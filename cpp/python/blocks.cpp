@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 namespace anisocontact::bindings {
 

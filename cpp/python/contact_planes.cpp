@@ -6,7 +6,7 @@
 #include "anisocontact/mortar/plane_slopes.hpp"
 #include "anisocontact/mortar/surface_tangents.hpp"
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 namespace anisocontact::bindings {
 

@@ -5,10 +5,10 @@
 #include <span>
 
 #include "anisocontact/kernel/parallel.hpp"
+#include "bindings.hpp"
 #include "facet_blocks.hpp"
 #include "facet_output.hpp"
 #include "given_law.hpp"
-#include "rooms.hpp"
 #include "types.hpp"
 
 namespace anisocontact::bindings {

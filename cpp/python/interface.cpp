@@ -12,9 +12,9 @@
 #include "anisocontact/kernel/parallel.hpp"
 #include "anisocontact/kernel/point.hpp"
 #include "arrays.hpp"
+#include "bindings.hpp"
 #include "given_law.hpp"
 #include "own_input.hpp"
-#include "rooms.hpp"
 #include "states.hpp"
 #include "types.hpp"
 

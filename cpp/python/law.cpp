@@ -10,7 +10,7 @@
 #include "anisocontact/kernel/parallel.hpp"
 #include "anisocontact/law/slide_batch.hpp"
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 #include "types.hpp"
 
 namespace anisocontact::bindings {

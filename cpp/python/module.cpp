@@ -1,8 +1,8 @@
-// The extension module: one function a room.
+// The extension module: one function of each file.
 
 #include <nanobind/nanobind.h>
 
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 NB_MODULE(_core, m) {
   // objects that an interrupted run leaves behind are no news for its user

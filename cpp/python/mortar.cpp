@@ -4,7 +4,7 @@
 #include "anisocontact/mortar/couplings.hpp"
 #include "anisocontact/mortar/nodal_weights.hpp"
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>

@@ -5,7 +5,7 @@
 
 #include "anisocontact/kernel/carried.hpp"
 #include "arrays.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 
 namespace anisocontact::bindings {
 

@@ -6,7 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "anisocontact/kernel/evolution.hpp"
-#include "rooms.hpp"
+#include "bindings.hpp"
 #include "types.hpp"
 
 namespace nb = nanobind;

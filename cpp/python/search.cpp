@@ -11,8 +11,8 @@
 
 #include "anisocontact/kernel/parallel.hpp"
 #include "anisocontact/search/smoothing.hpp"
+#include "bindings.hpp"
 #include "geometries.hpp"
-#include "rooms.hpp"
 
 namespace anisocontact::bindings {
 

@@ -15,8 +15,8 @@
 #include "anisocontact/projection/linearisation.hpp"
 #include "anisocontact/projection/velocity.hpp"
 #include "arrays.hpp"
+#include "bindings.hpp"
 #include "geometries.hpp"
-#include "rooms.hpp"
 #include "types.hpp"
 
 namespace anisocontact::bindings {

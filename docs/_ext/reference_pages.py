@@ -56,14 +56,14 @@ def command_page(parser: argparse.ArgumentParser) -> str:
 # --- surfaces, laws, rules ---------------------------------------------------------------------
 
 
-def registry_page(rooms: Mapping[str, Iterable[Any]]) -> str:
+def registry_page(registries: Mapping[str, Iterable[Any]]) -> str:
     """Return the page of everything that is registered."""
     parts = [
         "# Surfaces, directions, laws and rules\n",
         "`anisocontact info` prints the same. In a case file the key of an angle ends in "
         "`_deg`; Python takes it in degrees by that name, or in radian without `_deg`.\n",
     ]
-    for title, entries in rooms.items():
+    for title, entries in registries.items():
         parts.append(f"## {title}\n")
         for entry in entries:
             rows = (
@@ -112,7 +112,7 @@ def parameter_default(parameter: Any) -> str:
 # --- Python ------------------------------------------------------------------------------------
 
 
-#: What users need of the lowest room; the rest of it is for the other rooms alone.
+#: What users need of the lowest package; the rest of it is for the other packages alone.
 OF_BASE = {"base.errors", "base.registry"}
 
 
@@ -150,7 +150,7 @@ def write_pages(app: Sphinx) -> None:
     from anisocontact.cli import build_parser
     from anisocontact.results.quantities import FILES, quantities
 
-    rooms = {
+    registries = {
         "Surfaces": registry.surfaces(),
         "Direction fields": registry.direction_fields(),
         "Normal laws": registry.normal_laws(),
@@ -164,7 +164,7 @@ def write_pages(app: Sphinx) -> None:
         "case-file": CaseReference(json_schema()).page(),
         "trace-file": CaseReference(trace_schema(), TRACE_INTRODUCTION, "trace-").page(),
         "command": command_page(build_parser()),
-        "laws": registry_page(rooms),
+        "laws": registry_page(registries),
         "quantities": quantities_page(quantities(), FILES),
     }
     source = Path(app.srcdir).parent / "src" / "anisocontact"

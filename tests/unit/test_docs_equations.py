@@ -86,16 +86,16 @@ def registered() -> frozenset[str]:
 
 
 def declared(symbol: str, file: str) -> bool:
-    """Whether a header declares `room::name`."""
-    room, _, name = symbol.rpartition("::")
+    """Whether a header declares `namespace::name`."""
+    space, _, name = symbol.rpartition("::")
     text = header(file)
-    inside = room == "anisocontact" or f"namespace anisocontact::{room} {{" in text
+    inside = space == "anisocontact" or f"namespace anisocontact::{space} {{" in text
     form = rf"\b(?:struct|class|concept)\s+{name}\b|\busing\s+{name}\s*=|\b{name}\("
     return inside and re.search(form, text) is not None
 
 
 def split(name: str) -> tuple[str, list[str]]:
-    """Module and attributes of a name `room.module.Class.name`; the module may be a whole room."""
+    """Module and attributes of `package.module.Class.name`; the module may be a whole package."""
     parts = name.split(".")
     count = 0
     while count < len(parts) and (
@@ -181,7 +181,7 @@ def test_names_of_an_equation_exist(row: list[str]) -> None:
 
 
 def of_core(code: str) -> set[str]:
-    """Names of the core in a cell, without their rooms."""
+    """Names of the core in a cell, without their namespaces."""
     return {t.rpartition("::")[2] for t in TOKEN.findall(code) if "::" in t}
 
 

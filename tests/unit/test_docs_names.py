@@ -23,7 +23,7 @@ from anisocontact.cli.main import build_parser
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "PACKAGE.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES = [page for page in PAGES if not {"_build", "generated"} & set(page.parts)]
-ROOMS = "anisotropy bulk case contact interface laws mesh point results rigid solver surfaces"
+PACKAGES = "anisotropy bulk case contact interface laws mesh point results rigid solver surfaces"
 REFERENCE = re.compile(r"\{py:\w+\}`~?([\w.]+)`")
 INLINE = re.compile(r"(?<!`)`([A-Za-z_][\w.]*\([^`\n]*\))`(?!`)")
 COMMAND = re.compile(r"^(?:\$ |srun )?anisocontact (.*?)(?:\s+#.*)?$", re.MULTILINE)
@@ -49,8 +49,8 @@ def found(name: str) -> Any:
 
 def callables() -> dict[str, Callable[..., Any]]:
     """What scripts may call, by its name."""
-    rooms = [importlib.import_module(f"anisocontact.{room}") for room in ROOMS.split()]
-    named = {name: getattr(room, name) for room in rooms for name in room.__all__}
+    packages = [importlib.import_module(f"anisocontact.{package}") for package in PACKAGES.split()]
+    named = {name: getattr(package, name) for package in packages for name in package.__all__}
     return {name: value for name, value in named.items() if callable(value)}
 
 

@@ -1,4 +1,4 @@
-"""A room uses those below it and never one that uses it; no file uses one that uses it."""
+"""A package uses those below it and never one that uses it; no file uses one that uses it."""
 
 import ast
 import subprocess
@@ -12,13 +12,13 @@ import pytest
 
 SOURCES = Path(__file__).parents[2] / "src" / "anisocontact"
 #: From the bottom up, as `docs/dev/architecture.md` draws them.
-ROOMS = (
+PACKAGES = (
     *("base", "surfaces", "anisotropy", "laws", "interface", "point"),
     *("rigid", "mesh", "bulk", "contact", "solver", "results", "case", "cli"),
 )
 #: The same within the solver.
 SOLVER = ("terms", "system", "strategies", "stepping")
-MOST_ROOMS = 14
+MOST_PACKAGES = 14
 
 
 def name_of(path: Path) -> str:
@@ -52,12 +52,12 @@ def uses() -> Mapping[str, set[str]]:
     }
 
 
-def rooms() -> Mapping[str, set[str]]:
-    """Rooms that each room uses."""
+def packages() -> Mapping[str, set[str]]:
+    """Packages that each package uses."""
     found: dict[str, set[str]] = defaultdict(set)
     for name, used in uses().items():
-        room = [*name.split("."), ""][1]
-        found[room] |= {m.split(".")[1] for m in used} - {room}
+        package = [*name.split("."), ""][1]
+        found[package] |= {m.split(".")[1] for m in used} - {package}
     return found
 
 
@@ -80,33 +80,33 @@ def circles(graph: Mapping[str, set[str]]) -> set[frozenset[str]]:
     }
 
 
-def test_rooms_are_few_and_known() -> None:
-    """A new room is drawn in the architecture page before it is built."""
+def test_packages_are_few_and_known() -> None:
+    """A new package is drawn in the architecture page before it is built."""
     present = {p.name for p in SOURCES.iterdir() if (p / "__init__.py").exists()}
-    assert present == set(ROOMS)
-    assert len(present) <= MOST_ROOMS
+    assert present == set(PACKAGES)
+    assert len(present) <= MOST_PACKAGES
     assert {p.stem for p in SOURCES.glob("*.py")} == {"__init__", "__main__"}
 
 
 def test_no_arrow_points_up() -> None:
-    for room, used in rooms().items():
-        if room in ROOMS:
-            above = set(ROOMS[ROOMS.index(room) + 1 :])
-            assert not used & above, f"{room} uses {sorted(used & above)} above it"
+    for package, used in packages().items():
+        if package in PACKAGES:
+            above = set(PACKAGES[PACKAGES.index(package) + 1 :])
+            assert not used & above, f"{package} uses {sorted(used & above)} above it"
 
 
 def test_no_arrow_points_up_in_the_solver() -> None:
-    for i, room in enumerate(SOLVER):
-        own, above = f"anisocontact.solver.{room}.", SOLVER[i + 1 :]
+    for i, package in enumerate(SOLVER):
+        own, above = f"anisocontact.solver.{package}.", SOLVER[i + 1 :]
         used = {m for name, them in uses().items() if name.startswith(own) for m in them}
         wrong = {
             m for m in used if m.startswith("anisocontact.solver.") and m.split(".")[2] in above
         }
-        assert not wrong, f"{room} uses {sorted(wrong)} above it"
+        assert not wrong, f"{package} uses {sorted(wrong)} above it"
 
 
 def test_no_circle_of_files() -> None:
-    """Also of files that name each other only for their types: one of them is in the wrong room."""
+    """Also of files that name each other only for their types: one is in the wrong package."""
     assert [sorted(circle) for circle in circles(uses())] == []
 
 
@@ -122,8 +122,8 @@ def test_circles_are_seen(graph: Mapping[str, set[str]], found: set[frozenset[st
 
 
 def test_points_know_nothing_of_results() -> None:
-    assert {"solver", "contact", "mesh"} <= rooms()["case"]
-    assert "results" not in rooms()["point"]
+    assert {"solver", "contact", "mesh"} <= packages()["case"]
+    assert "results" not in packages()["point"]
 
 
 def test_paths_of_before_name_those_of_today() -> None:

@@ -13,7 +13,7 @@ import anisocontact
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 #: What others bring is loaded once, then each module in a child that has none of ours. Those that a
-#: room loads itself come with the room, whoever names them; the others are tried from there.
+#: package loads itself come with the package, whoever names them; the others are tried from there.
 FIRST = """
 import importlib, os, sys
 

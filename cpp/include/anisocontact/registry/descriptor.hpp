@@ -67,7 +67,7 @@ class Values {
   std::map<std::string, std::vector<double>> values_;
 };
 
-/// A list of registered types; the registry of a room is one such list.
+/// A list of registered types; the registry of a folder is one such list.
 template <class... T>
 struct Registry {
   using Any = std::variant<T...>;

@@ -1,4 +1,5 @@
 #pragma once
+// What each file of this folder adds to the extension module.
 
 #include <nanobind/nanobind.h>
 
