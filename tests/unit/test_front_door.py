@@ -48,6 +48,21 @@ def test_names_of_before(package: str, before: str, today: str) -> None:
         _ = anisocontact.solver.bare
 
 
+@pytest.mark.parametrize(
+    ("before", "today"), [("inner_forces", "internal_forces"), ("flowed", "regularised")]
+)
+def test_attributes_of_before(before: str, today: str) -> None:
+    """As names: a problem has them by both, the one of before warns in the line of the script."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    problem = object.__new__(anisocontact.solver.Problem)
+    vars(problem)[today] = "what it is today"
+    with pytest.warns(
+        DeprecationWarning, match=rf"^Problem\.{before} is now Problem\.{today}$"
+    ) as t:
+        assert getattr(problem, before) == "what it is today"
+    assert [one.filename for one in t] == [__file__]
+
+
 def test_an_import_brings_nothing_that_was_not_asked_for():
     """Points need no finite elements, and the package alone not even NumPy."""
     code = (

@@ -6,6 +6,7 @@ import importlib
 import warnings
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 #: Names of before and those of today, in the packages that have them.
@@ -117,3 +118,35 @@ def renamed(module: str, name: str) -> Any:
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
     warnings.warn(f"{name} is now {today}", DeprecationWarning, stacklevel=3)
     return found
+
+
+class RenamedAttribute:
+    """An attribute or method of a class by its name of before, with a `DeprecationWarning`.
+
+    Args:
+        today: Its name today, dotted where it is one of an attribute.
+
+    Example:
+        >>> import warnings
+        >>> class Sphere:
+        ...     radius = 2.0
+        ...     size = RenamedAttribute("radius")
+        >>> with warnings.catch_warnings(record=True) as told:
+        ...     warnings.simplefilter("always")
+        ...     found = Sphere().size
+        >>> found, str(told[0].message)
+        (2.0, 'Sphere.size is now Sphere.radius')
+    """
+
+    def __init__(self, today: str) -> None:
+        self._today, self._before = today, ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._before = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        if instance is None:
+            return self
+        text = f"{owner.__name__}.{self._before} is now {owner.__name__}.{self._today}"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        return attrgetter(self._today)(instance)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
+from anisocontact.base.renamed import RenamedAttribute
 from anisocontact.base.typed import typed
 from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw
 from anisocontact.interface.python_law import PythonLaw
@@ -58,6 +58,9 @@ class Interface(CopiedByArguments):
         [[-3.0, 0.0, 10.0]]
     """
 
+    adhesion = RenamedAttribute("tangential.adhesion")
+    friction = RenamedAttribute("tangential.friction")
+
     def __init__(
         self,
         surface: Surface,
@@ -81,18 +84,6 @@ class Interface(CopiedByArguments):
                 raise InputError(text + "master only", self.needs_slave)
             self.carried = tuple(replace(c, on="master") for c in self.carried)
         self.core = _core.Interface(surface.core, law.core)
-
-    @property
-    def adhesion(self) -> Adhesion | None:
-        """Law inside the yield ellipse; by this name for one version more."""
-        _warn_of("adhesion")
-        return self.tangential.adhesion
-
-    @property
-    def friction(self) -> Friction | None:
-        """Yield ellipse and sliding rule; by this name for one version more."""
-        _warn_of("friction")
-        return self.tangential.friction
 
     def _with(self, law: ContactLaw) -> Interface:
         return Interface(self.surface, law, threads=self.threads)
@@ -223,8 +214,3 @@ class Interface(CopiedByArguments):
             tangent_slave=r["tangent_own"],
             tangent_slip=r["by_slip"],
         )
-
-
-def _warn_of(name: str) -> None:
-    text = f"Interface.{name} is now Interface.tangential.{name}"
-    warnings.warn(text, DeprecationWarning, stacklevel=3)

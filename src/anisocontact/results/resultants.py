@@ -100,7 +100,7 @@ class SectionResultant:
 
     def forces(self, problem: Problem) -> Floats:
         """Half of those at all nodes that this process owns, (nodes, 3), force."""
-        return -0.5 * problem.inner_forces()
+        return -0.5 * problem.internal_forces()
 
 
 type Resultant = GroupResultant | SectionResultant

@@ -177,7 +177,7 @@ class _Damped:
 
 
 @pytest.mark.parametrize("anew", [True, False])
-def test_inner_forces_of_a_state_that_is_restored(anew):
+def test_internal_forces_of_a_state_that_is_restored(anew):
     """What cells carry in a state is the same once it is restored, in a new problem or its own.
 
     Requirement: bit by bit; the top carries spring and dashpot, 1e-9. Source: a uniform strain of
@@ -194,9 +194,9 @@ def test_inner_forces_of_a_state_that_is_restored(anew):
     first = made()
     for count, _ in enumerate(first.run()):
         if count == 0:
-            kept, wanted = first.persistent(), first.problem.inner_forces().copy()
+            kept, wanted = first.persistent(), first.problem.internal_forces().copy()
     second = made() if anew else Solver(first.problem, first.steps)
     second.restore(kept)
-    assert np.array_equal(second.problem.inner_forces(), wanted)
+    assert np.array_equal(second.problem.internal_forces(), wanted)
     top = first.problem.model.nodes("bar.top")
     assert wanted[top, 2].sum() == pytest.approx(-0.05 - 0.1, rel=1e-9)

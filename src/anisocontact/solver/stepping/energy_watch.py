@@ -91,9 +91,9 @@ class EnergyWatch:
         Where a jump was regularised that is what the increment has left open, unless forces of
         supports and loads between those of both of its ends can explain it.
         """
-        energies, flowed = self._problem.energies(), self._problem.flowed
+        energies, ends = self._problem.energies(), self._problem.regularised
         lost = energies["residual"] - self._residual
-        if flowed is None or not lost > BELIEVED * flowed.missed:
+        if ends is None or not lost > BELIEVED * ends.missed:
             return energies
         self._problem.stabilisation.released += lost
         energies["regularisation"] += lost

@@ -9,6 +9,7 @@ from typing import Any, override
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
+from anisocontact.base.renamed import RenamedAttribute
 from anisocontact.base.typed import typed
 from anisocontact.base.uncopied import Uncopied
 from anisocontact.bulk import Material
@@ -72,7 +73,7 @@ class Problem(ComposedSystem, Uncopied):
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
         begun: How many steps have begun.
-        flowed: Work of the last accepted increment if viscous regularisation led to it.
+        regularised: Work of the last accepted increment if viscous regularisation led to it.
         evaluation: Forces at the state of the last evaluation.
 
     Raises:
@@ -87,6 +88,8 @@ class Problem(ComposedSystem, Uncopied):
         >>> Problem(model, {"block": steel}, []).unknowns
         24
     """
+
+    flowed = RenamedAttribute("regularised")
 
     def __init__(
         self,
@@ -120,7 +123,7 @@ class Problem(ComposedSystem, Uncopied):
         self.begun = 0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
-        self.flowed: EndsWork | None = None
+        self.regularised: EndsWork | None = None
         self.whole = Whole(self.evaluation, parts, self._bodies, self._accepted)
         self.reduction: Reduction = self.whole
         self._restart_state = RestartState(assembly.terms, self._accepted, self._bodies)
@@ -332,7 +335,7 @@ class Problem(ComposedSystem, Uncopied):
         """
         ends, nodal = self.reduction.commit(x), self.reduction.nodal(x)
         ends += EndsWork.of(*self.assembly.bodies.heating(nodal))
-        self.flowed = ends if self.stabilisation.regularisation.active else None
+        self.regularised = ends if self.stabilisation.regularisation.active else None
         work = ends.mean + self._contact_work.of_overlaps()
         so_far = self._accepted.work + work
         work += self._contact_work.beyond_the_means(nodal, self.dt, so_far, ends)

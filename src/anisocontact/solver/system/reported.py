@@ -12,6 +12,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
+from anisocontact.base.renamed import RenamedAttribute
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly
@@ -61,6 +62,8 @@ class ReportedSystem(AssembledSystem):
         reduction: Who answers for it now.
     """
 
+    inner_forces = RenamedAttribute("internal_forces")
+
     assembly: Assembly
     layout: Layout
     attached: Attachments
@@ -108,7 +111,7 @@ class ReportedSystem(AssembledSystem):
             sums[name] = sums.get(name, 0.0) + force
         return sums
 
-    def inner_forces(self) -> Floats:
+    def internal_forces(self) -> Floats:
         """Internal force on the nodes this rank owns, accepted state, (nodes, 3), force."""
         if self._trial is not None:
             return self.assembly.bodies.internal_force(self._bodies.nodal).reshape(-1, 3)
