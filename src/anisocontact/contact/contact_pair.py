@@ -15,7 +15,7 @@ from anisocontact.base.arrays import read_only
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
-from anisocontact.contact.eased_trials import EasedTrials
+from anisocontact.contact.continuation_trials import ContinuationTrials
 from anisocontact.contact.energies import ContactEnergies
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.initial import check_start
@@ -104,7 +104,7 @@ class ContactPair:
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
-        self.trials = EasedTrials(points, master, parts.law, self._committed, self._comm)
+        self.trials = ContinuationTrials(points, master, parts.law, self._committed, self._comm)
         self._energies = ContactEnergies(self.trials, len(self._committed), self._comm)
         check_start(self, points.size)
         self._augmentation = augmentation = options.augmentation

@@ -1,11 +1,11 @@
-"""Trials of a contact that is held in easier ways on the way to its own laws."""
+"""Trials on the way to the laws of a contact: continuation from what is easier to solve."""
 
 from __future__ import annotations
 
 from anisocontact.contact.trials import Trials
 
 
-class EasedTrials(Trials):
+class ContinuationTrials(Trials):
     """Trials that a compliant layer, softer penalties or multipliers can lead to their laws."""
 
     def lay(self, compliance: float, dt: float) -> None:
