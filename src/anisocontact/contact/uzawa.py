@@ -26,8 +26,8 @@ MOST_CYCLES = 30
 SLOW, SOFT, RAISE, SOFTEST = 0.3, 0.9, 10.0, 2e-3
 #: Cycles before penalties that were too high are raised again.
 PATIENCE = 4
-#: Directions of the mixing that count, relative to the largest.
-RANK = 1e-12
+#: Values that the mixing keeps, and its directions that count, relative to the largest.
+MEMORY, RANK = 6, 1e-12
 
 
 class Uzawa(Multipliers):
@@ -195,12 +195,10 @@ class Mixing:
 
     Args:
         comm: Communicator over whose ranks the points are spread.
-        memory: Number of values that are kept.
     """
 
-    def __init__(self, comm: Any, memory: int = 6) -> None:
+    def __init__(self, comm: Any) -> None:
         self._comm = comm
-        self._memory = memory
         self._seen: list[tuple[Floats, Floats]] = []
 
     def next(self, given: Floats, found: Floats, weights: Floats) -> Floats:
@@ -214,7 +212,7 @@ class Mixing:
         Returns:
             The next argument, (n, k).
         """
-        self._seen = [*self._seen[-self._memory + 1 :], (found, found - given)]
+        self._seen = [*self._seen[-MEMORY + 1 :], (found, found - given)]
         values = np.array([value for value, _ in self._seen])
         rests = np.array([rest for _, rest in self._seen])
         if len(values) == 1:

@@ -18,6 +18,8 @@ from anisocontact.mesh.split import share_of
 
 _UNIT = np.array(list(product((0, 1), repeat=3)))[:, ::-1]
 SELF: Any = MPI.COMM_SELF
+#: More cells than fit in the memory of any one machine.
+MOST_CELLS = 10**8
 
 
 def mesh_blocks(
@@ -120,12 +122,12 @@ def _side(cells: Ints, lattice: Lattice, side: Side, cell: str, degree: int) -> 
     return np.asarray(facets[np.all(lattice.on(facets, side), axis=1)])
 
 
-def check_count(blocks: Sequence[Block], most: int = 10**8) -> None:
+def check_count(blocks: Sequence[Block]) -> None:
     """Refuse more cells than fit in the memory of any one machine: a slip of the keyboard.
 
     Raises:
         InputError: Says how many there would be.
     """
     count = sum(block.count for block in blocks)
-    if count > most:
-        raise InputError(f"{count:.1e} cells given, at most {most:.0e} allowed", "cells")
+    if count > MOST_CELLS:
+        raise InputError(f"{count:.1e} cells given, at most {MOST_CELLS:.0e} allowed", "cells")

@@ -104,13 +104,12 @@ class Schedule:
         return a
 
 
-def knot_times(given: npt.ArrayLike | None, value: Any, field: str = "times") -> Floats:
+def knot_times(given: npt.ArrayLike | None, value: Any) -> Floats:
     """Times of the knots: as given, or 0, 1, 2, ... for the knots of `value`.
 
     Args:
         given: Times, increasing, (k,) [time].
         value: The knots the times belong to, a constant or a function.
-        field: Name for messages.
 
     Returns:
         Times, (k,), at least two.
@@ -122,26 +121,25 @@ def knot_times(given: npt.ArrayLike | None, value: Any, field: str = "times") ->
     if given is None:
         n = 0 if callable(value) or not np.ndim(value) else len(value)
         if n < 2:
-            raise InputError("missing; times of start and end are needed", field=field)
+            raise InputError("missing; times of start and end are needed", field="times")
         return np.arange(float(n))
     times = np.asarray(given, dtype=np.float64)
     if times.ndim != 1 or len(times) < 2 or not np.isfinite(times).all():
-        raise InputError("a list of at least two times is needed", field=field)
+        raise InputError("a list of at least two times is needed", field="times")
     if not (np.diff(times) > 0.0).all():
-        raise InputError(f"{times.tolist()} given, increasing times needed", field=field)
-    check_size(field, times)
+        raise InputError(f"{times.tolist()} given, increasing times needed", field="times")
+    check_size("times", times)
     for duration in np.diff(times):
-        check_size(field, duration, zero=False)
+        check_size("times", duration, zero=False)
     return times
 
 
-def instants(times: Floats, increments: int | Sequence[int], field: str = "increments") -> Floats:
+def instants(times: Floats, increments: int | Sequence[int]) -> Floats:
     """Ends of the time steps: every segment between knots in equal steps.
 
     Args:
         times: Times of the knots, (k,).
         increments: Steps of each segment, one number for all or a list of k - 1.
-        field: Name for messages.
 
     Returns:
         Instants, the first is the start, (m + 1,).
@@ -152,9 +150,11 @@ def instants(times: Floats, increments: int | Sequence[int], field: str = "incre
     n = len(times) - 1
     given = np.asarray(increments)
     if given.dtype.kind not in "iu" or (given < 1).any():
-        raise InputError(f"{increments!r} given, whole numbers > 0 needed", field=field)
+        raise InputError(f"{increments!r} given, whole numbers > 0 needed", field="increments")
     if given.shape not in ((), (n,)):
-        raise InputError(f"{given.size} given, one or {n} needed, one a segment", field=field)
+        raise InputError(
+            f"{given.size} given, one or {n} needed, one a segment", field="increments"
+        )
     counts = np.broadcast_to(given, n).tolist()
     parts = [
         np.linspace(a, b, c + 1)[1:] for a, b, c in zip(times[:-1], times[1:], counts, strict=True)

@@ -29,7 +29,7 @@ from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
-from anisocontact.solver.terms.midside_nodes import constrain_middles, middle_nodes
+from anisocontact.solver.terms.midside_nodes import constrain_middles, midside_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.sector_contacts import go_on_beyond_cuts
 from anisocontact.solver.terms.stabilisation import Stabilisation
@@ -107,7 +107,7 @@ def make_parts(
     """
     _check(model, materials, contacts, connections.symmetry)
     specs = connections.attached
-    faces = CoupledFaces(connections.coupled, model, materials, middle_nodes(model))
+    faces = CoupledFaces(connections.coupled, model, materials, midside_nodes(model))
     bulk = _bulk(model, materials, faces)
     bodies, rigid = Bodies(bulk, model.unknowns), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.unknowns, rigid.size)
@@ -170,9 +170,9 @@ def _guides(
     model: Model, symmetry: Sequence[str], like: Vec, tied: TiedFaces | None, faces: CoupledFaces
 ) -> Guides:
     """What holds nodes along directions of their own, which coupled faces have none of."""
-    planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
+    planes = SymmetryPlanes(model, symmetry, midside_nodes(model))
     sectors = None if tied is None else tied.sectors
-    guides = Guides(model, planes, like, middle_nodes(model), sectors)
+    guides = Guides(model, planes, like, midside_nodes(model), sectors)
     on = [np.zeros(0, int), *(nodes for nodes, _ in guides.of_planes())]
     faces.check_planes(np.unique(np.concatenate(on)))
     return guides

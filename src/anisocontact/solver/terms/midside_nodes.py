@@ -12,14 +12,9 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 
 
-def middle_nodes(model: Model, without: Collection[str] = ()) -> Ints:
-    """Nodes this rank owns that follow from corners, local numbers.
-
-    Args:
-        model: The mesh.
-        without: Bodies that are left out.
-    """
-    return np.unique(shares_of_corners(model, without)[0])
+def midside_nodes(model: Model) -> Ints:
+    """Nodes this rank owns that follow from corners, local numbers."""
+    return np.unique(shares_of_corners(model)[0])
 
 
 def constrain_middles(model: Model, like: Vec, without: Collection[str] = ()) -> Constraint | None:

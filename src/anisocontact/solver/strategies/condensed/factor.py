@@ -58,15 +58,15 @@ class Eliminator(Protocol):
         ...
 
 
-def aij(matrix: scipy.sparse.csr_array, block: int = 1) -> Mat:
-    """The same matrix for PETSc, on this process alone, of blocks of some rows."""
+def aij(matrix: scipy.sparse.csr_array) -> Mat:
+    """The same matrix for PETSc, on this process alone."""
     parts = (
         (matrix.indptr, PETSc.IntType),
         (matrix.indices, PETSc.IntType),
         (matrix.data, PETSc.ScalarType),
     )
     csr = tuple(np.ascontiguousarray(values, dtype=kind) for values, kind in parts)
-    return PETSc.Mat().createAIJ(matrix.shape, bsize=block, csr=csr, comm=PETSc.COMM_SELF)
+    return PETSc.Mat().createAIJ(matrix.shape, csr=csr, comm=PETSc.COMM_SELF)
 
 
 def mirror(lower: Floats) -> None:
