@@ -5,12 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.solver.stepping.limit_load import (
-    PressedPoints,
-    friction_needed,
-    limit,
-    withdrawal,
-)
+from anisocontact.solver.stepping.limit_load import PressedPoints, limit, withdrawal
+from anisocontact.solver.stepping.static_limit import StaticBalance, friction_needed
 
 MU = 0.3
 EVERY = np.eye(6)
@@ -122,11 +118,12 @@ def test_a_ladder_that_stands_too_flat_needs_more_friction(degrees: float) -> No
     a = np.radians(degrees)
     end = 0.5 * np.array([np.cos(a), np.sin(a), 0.0])
     normal = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-    needed = friction_needed(
+    ladder = StaticBalance.of_body(
         _points(np.array([-end, end]), normal, np.ones(2)),
         EVERY[[0, 1, 5]],
         np.array([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]),
     )
+    needed = friction_needed(ladder)
     slope = np.tan(a)
     least = (np.sqrt(slope**2 + 1.0) - slope) / MU
     assert needed == pytest.approx(max(least, 1.0), rel=2e-3)
@@ -144,9 +141,10 @@ def test_friction_that_is_needed_follows_its_ellipse() -> None:
     points = PressedPoints(ring.arms, ring.normal, ring.force, friction)
     c, s = 0.5 * np.cos(np.pi / 6), 0.5 * np.sin(np.pi / 6)
     load = np.array([c, s, -1.0, 0.0, 0.0, 0.0])
-    needed = friction_needed(points, EVERY, load)
+    needed = friction_needed(StaticBalance.of_body(points, EVERY, load))
     assert needed == pytest.approx(np.hypot(c / 0.4, s / 0.2), rel=6e-3)
-    assert friction_needed(points, EVERY, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) == np.inf
+    pull = StaticBalance.of_body(points, EVERY, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))
+    assert friction_needed(pull) == np.inf
 
 
 @pytest.mark.parametrize("load", [(0.0, 1.0), (0.3, 1.0), (0.0, -0.1), (0.0, -2.0)])

@@ -176,6 +176,71 @@ def test_an_increment_is_not_cut_on_and_on_where_nothing_could_hold_a_body() -> 
     assert len(cuts) == 2
 
 
+STEEP = np.tan(np.radians(30.0))
+
+
+def _keystone(friction: float, between: float) -> tuple[Problem, Step]:
+    """A wedge on faces of two blocks on a floor, and a step with the weights of all."""
+    left, wedge, right = (
+        make_shape("rectangle", origin=at, size=size, cells=cells)
+        for at, size, cells in (
+            ((-3, 0), (2.5, 1), (4, 3)),
+            ((-0.5, 0), (1, 1), (2, 3)),
+            ((0.5, 0), (2.5, 1), (4, 3)),
+        )
+    )
+    bodies = [Body("left", left), Body("wedge", wedge), Body("right", right)]
+    model = build_mesh(bodies, idealisation=PlaneStrain())
+    x = model.mesh.geometry.x
+    away = np.minimum(np.abs(x[:, 0]) / 0.5, (3.0 - np.abs(x[:, 0])) / 2.5)
+    x[:, 0] += np.sign(x[:, 0]) * away * STEEP * x[:, 1]
+    floor = make_surface("plane", point=(0, 0, 0), normal=(0, 1, 0))
+    rough, faces = Friction(coefficients=friction), Friction(coefficients=between)
+    contacts = [
+        Contact(model, "left.bottom", floor, rough),
+        Contact(model, "right.bottom", floor, rough),
+        Contact(model, "wedge.left", "left.right", faces),
+        Contact(model, "right.left", "wedge.right", faces),
+    ]
+    names = ("left", "wedge", "right")
+    steel = {name: make_material("linear-elastic", E=1e4, nu=0.3) for name in names}
+    weight = {name: {"y": -0.01} for name in names}
+    return Problem(model, steel, contacts), Step("weight", 1, body_force=weight)
+
+
+@pytest.mark.parametrize(
+    ("friction", "between", "said"), [(0.35, 0.0, True), (0.25, 0.1, True), (0.5, 0.0, False)]
+)
+def test_an_assemblage_that_nothing_can_hold_is_told_before_anything_presses(
+    friction: float, between: float, said: bool
+) -> None:
+    """A wedge that drives two blocks apart, each of which could be held by itself.
+
+    Requirement: it is told that no forces where they touch hold them, and how much friction would;
+    nothing where friction is enough. Source: with m times the friction the weight W of the wedge
+    drives each block with `W / (2 tan(a + b))`, `tan b` the friction between them, and the floor
+    presses on it with its weight and W / 2. Tolerance: three digits as shown, and those of the
+    search.
+    """
+    problem, step = _keystone(friction, between)
+    problem.begin(step)
+    told = Failures(problem, []).hint(step, RunPosition.beginning(0, 0.0, Limits()), 1)
+    if not said:
+        assert told == ""
+        return
+    named = told[: told.index(" touch balance the loads on them")]
+    assert named.startswith("no forces where ") and "body 'wedge'" in named
+    assert "body 'left'" in named or "body 'right'" in named  # one of them slides, or both
+    (number,) = re.findall(r"it would take ([\d.]+) times the friction; hold them, or", told)
+    wedge, block = 1.0 + STEEP, 2.5 - 0.5 * STEEP
+
+    def left(times: float) -> float:
+        lean = np.arctan(STEEP) + np.arctan(times * between)
+        return float(times * friction * (block + 0.5 * wedge) - 0.5 * wedge / np.tan(lean))
+
+    assert float(number) == pytest.approx(brentq(left, 0.5, 3.0), rel=3e-3)
+
+
 LEAN = np.radians(15.0)
 MIDDLE = {"half.left": {"x": 0.0}}
 

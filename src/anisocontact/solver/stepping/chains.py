@@ -28,7 +28,7 @@ def chains(bodies: Sequence[Driven]) -> Iterator[Driven]:
         Each set of two or more that has motions of its own, small ones first.
     """
     found: set[tuple[int, ...]] = set()
-    between = _between(bodies)
+    between = contacts_between(bodies)
     for left_out in (None, *between):
         pairs = [pair for contact, pair in between.items() if contact is not left_out]
         label = connected(len(bodies), np.array(pairs, dtype=np.int64).reshape(-1, 2))
@@ -41,7 +41,7 @@ def chains(bodies: Sequence[Driven]) -> Iterator[Driven]:
                 yield whole
 
 
-def _between(bodies: Sequence[Driven]) -> dict[Contact, tuple[int, int]]:
+def contacts_between(bodies: Sequence[Driven]) -> dict[Contact, tuple[int, int]]:
     """Contacts of two of the bodies, with their places."""
     places: dict[Contact, list[int]] = {}
     for i, body in enumerate(bodies):
@@ -51,7 +51,7 @@ def _between(bodies: Sequence[Driven]) -> dict[Contact, tuple[int, int]]:
 
 
 def _joined(bodies: Sequence[Driven]) -> Driven:
-    inner = _between(bodies)
+    inner = contacts_between(bodies)
     centre = np.mean([body.centre for body in bodies], axis=0)
     size = max(float(np.linalg.norm(body.centre - centre)) + body.size for body in bodies)
     loads, before = (

@@ -18,11 +18,11 @@ from anisocontact.solver.stepping.overload import (
     far_beyond,
     reason_of,
     too_much_load,
-    unbalanced,
 )
 from anisocontact.solver.stepping.pulled_out import pulled_out
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
+from anisocontact.solver.stepping.unbalanced_loads import unbalanced
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 

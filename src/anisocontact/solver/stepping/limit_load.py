@@ -23,12 +23,8 @@ NONE = 1e-9
 ROUNDS, REST = 60, 1e-7
 #: Corners of the polygon around the ellipse of friction, which touches it on its axes.
 CORNERS = 32
-#: Times the friction beyond which none would do, and how exactly the number is found.
-NO_FRICTION, EXACT = 1e3, 1e-3
 #: Points up to which forces at them are looked for.
 FEW = 2000
-#: What a linear program says that has no solution.
-INFEASIBLE = 2
 
 
 @dataclass(frozen=True)
@@ -135,7 +131,7 @@ def withdrawal(points: PressedPoints, motions: Floats, load: Floats) -> Limit | 
     size, count = float(np.linalg.norm(driven)), len(points.force)
     if count > FEW or size <= NONE * np.linalg.norm(load):
         return None
-    rubs = np.einsum("njc,nck->njk", _polygons(points), along).reshape(-1, len(motions))
+    rubs = np.einsum("njc,nck->njk", friction_polygons(points), along).reshape(-1, len(motions))
     speeds = scipy.sparse.kron(scipy.sparse.eye(count), np.ones((CORNERS, 1)))
     found = scipy.optimize.linprog(
         np.concatenate([np.zeros(len(motions)), points.force]),
@@ -152,56 +148,9 @@ def withdrawal(points: PressedPoints, motions: Floats, load: Floats) -> Limit | 
     return Limit(mixed @ motions, float(points.force @ held))
 
 
-def _polygons(points: PressedPoints) -> Floats:
+def friction_polygons(points: PressedPoints) -> Floats:
     """Largest forces of friction over the normal force, corners around its ellipse, (n, j, 3)."""
     _, widths, axes = np.linalg.svd(points.friction)
     turns = 2.0 * np.pi * (np.arange(CORNERS) + 0.5) / CORNERS
     corners = np.column_stack([np.cos(turns), np.sin(turns)]) / np.cos(np.pi / CORNERS)
     return np.asarray(np.einsum("ji,ni,nic->njc", corners, widths[:, :2], axes[:, :2]))
-
-
-def friction_needed(points: PressedPoints, motions: Floats, load: Floats) -> float:
-    """How many times the friction it takes for any forces at points to balance loads.
-
-    Whatever presses where: normal forces are unknowns, and those of `points` do not count. Without
-    such forces there is no equilibrium that touches at these points alone.
-
-    Args:
-        points: Where a body touches.
-        motions: Motions that nothing but contact holds, orthonormal, (k, 6).
-        load: Force, and moment about the centre over the size, (6,).
-
-    Returns:
-        At least 1; infinite where no friction would do; 1 with more points than can be looked at.
-    """
-    driven = motions @ load
-    size = float(np.linalg.norm(driven))
-    if len(points.force) > FEW or size <= NONE * np.linalg.norm(load):
-        return 1.0
-    along, rubs = points.velocities(motions), _polygons(points)
-    works = [
-        np.einsum("ni,nik->kn", points.normal, along),
-        np.einsum("njc,nck->knj", rubs, along).reshape(len(motions), -1),
-    ]
-    count = len(points.force)
-    sums = scipy.sparse.kron(scipy.sparse.eye(count), np.ones((1, CORNERS)))
-
-    def balanced(times: float) -> bool:
-        found = scipy.optimize.linprog(
-            np.zeros(count * (1 + CORNERS)),
-            A_ub=scipy.sparse.hstack([-times * scipy.sparse.eye(count), sums]).tocsr(),
-            b_ub=np.zeros(count),
-            A_eq=np.hstack(works),
-            b_eq=-driven / size,
-        )
-        return int(found.status) != INFEASIBLE
-
-    if balanced(1.0):
-        return 1.0
-    low, high = 1.0, NO_FRICTION
-    if not balanced(high):
-        return float("inf")
-    while high > (1.0 + EXACT) * low:
-        middle = float(np.sqrt(low * high))
-        low, high = (low, middle) if balanced(middle) else (middle, high)
-    return high

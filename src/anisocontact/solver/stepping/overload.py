@@ -19,10 +19,8 @@ from anisocontact.contact import Contact
 from anisocontact.solver.stepping.chains import chains
 from anisocontact.solver.stepping.driven import Driven, deformable, driven
 from anisocontact.solver.stepping.limit_load import (
-    NO_FRICTION,
     Limit,
     PressedPoints,
-    friction_needed,
     limit,
 )
 from anisocontact.solver.stepping.pressed_points import moves, pressed_points, shown, slipping
@@ -113,26 +111,6 @@ def exhausted(problem: Problem, now: float) -> list[Overload]:
 def far_beyond(problem: Problem, fraction: float, now: float) -> list[Overload]:
     """As of `too_much_load`, of loads without evidence enough but for their size."""
     return [one for one in _found(problem, driven(problem, fraction, now)) if one.far]
-
-
-def unbalanced(problem: Problem, fraction: float, now: float) -> list[Overload]:
-    """As of `too_much_load`, of deformable bodies that touch and that nothing presses yet.
-
-    No forces at all at the points where they touch are in balance with their loads.
-    """
-    found = []
-    for body in deformable(problem, fraction, now):
-        points, touched, opened = pressed_points(problem, body)
-        if points is None or touched or opened:
-            continue
-        needed = friction_needed(points, body.motions, body.load)
-        if TOO_MUCH < needed < NO_FRICTION:  # what nothing could hold flies off, and that is told
-            text = (
-                f"no forces where {body.name} touches balance the loads on it: it would take "
-                f"{needed:.3g} times the friction; {WITHOUT}"
-            )
-            found.append(Overload(text, True, not moves(problem)))
-    return found
 
 
 def past_holding(problem: Problem, fraction: float, now: float, cuts: int) -> list[Overload]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.stepping.driven import Driven
 from anisocontact.solver.stepping.limit_load import PressedPoints
@@ -23,23 +24,15 @@ def pressed_points(problem: Problem, body: Driven) -> tuple[PressedPoints | None
     """
     found = []
     for contact, side in body.contacts:
-        friction = contact.interface.tangential.friction
-        if friction is None:
+        rows = _rows(problem, body, contact, side)
+        if rows is None:
             return None, False, False
-        last, areas = contact.last, contact.areas
-        rows = [
-            (contact.points - body.centre) / body.size,
-            side * last.normal,
-            areas * last.pressure,
-            areas * contact.meeting(),
-            _resistance(friction, last.directions_friction, last.normal),
-        ]
-        every = problem.comm.allgather(rows)
-        found.append([np.concatenate(column) for column in zip(*every, strict=True)])
+        found.append(rows)
     if not found:
         return None, False, False
-    columns = zip(*found, strict=True)
-    arms, normal, force, area, rubs = (np.concatenate(column) for column in columns)
+    arms, normal, force, area, rubs = (
+        np.concatenate(column) for column in zip(*found, strict=True)
+    )
     touched = bool(force.sum() > ROUNDED * np.linalg.norm(body.load))
     weight = force if touched else area
     closed = weight > 0.0
@@ -49,6 +42,45 @@ def pressed_points(problem: Problem, body: Driven) -> tuple[PressedPoints | None
     opened = not all(part[which].any() for part in found)
     kept = PressedPoints(arms[closed], normal[closed], weight[closed], rubs[closed])
     return kept, touched, opened
+
+
+def touching_points(problem: Problem, body: Driven) -> dict[Contact, PressedPoints]:
+    """Where a body touches, pressed or not, with areas for forces, of each contact; on all ranks.
+
+    Those of a contact of two bodies are in the same order for both. A contact with a law in Python
+    is left out.
+    """
+    found = {}
+    for contact, side in body.contacts:
+        rows = _rows(problem, body, contact, side)
+        if rows is not None:
+            arms, normal, _, area, rubs = (column[rows[3] > 0.0] for column in rows)
+            found[contact] = PressedPoints(arms, normal, area, rubs)
+    return found
+
+
+def _rows(
+    problem: Problem, body: Driven, contact: Contact, side: float
+) -> tuple[Floats, Floats, Floats, Floats, Floats] | None:
+    """Arms, normals, normal forces, areas that touch and friction of all slave points, all ranks.
+
+    None where the law is one in Python.
+    """
+    friction = contact.interface.tangential.friction
+    if friction is None:
+        return None
+    last, areas = contact.last, contact.areas
+    own = (
+        (contact.points - body.centre) / body.size,
+        side * last.normal,
+        areas * last.pressure,
+        areas * contact.meeting(),
+        _resistance(friction, last.directions_friction, last.normal),
+    )
+    arms, normal, force, area, rubs = (
+        np.concatenate(column) for column in zip(*problem.comm.allgather(own), strict=True)
+    )
+    return arms, normal, force, area, rubs
 
 
 def _resistance(friction: Friction, axes: Floats, normal: Floats) -> Floats:
