@@ -26,6 +26,7 @@ RETIRED = {
     r"parts? of (an |one )?increments?|increment is cut into parts": "sub-increment",
     r"inside out": "inverted",
     r"points? that hop": "points that alternate",
+    r"\binner forces?\b": "internal force",
     r"\bCourse\b|\bcourses_of\b": "load curve",
 }
 PAGES = [p for p in (ROOT / "docs").rglob("*.md") if not {"_build", "generated"} & set(p.parts)]

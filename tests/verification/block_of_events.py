@@ -31,7 +31,7 @@ def block(height: float = 0.0, nu: float = 0.0, **given: Any) -> Problem:
 
 
 def run(problem: Problem, *steps: Step, strategy: str = "direct") -> list[Accepted]:
-    """All accepted parts."""
+    """All accepted sub-increments."""
     solver = Solver(problem, list(steps), options={"snes_rtol": 1e-12}, strategy=strategy)
     return list(solver.run())
 

@@ -387,6 +387,6 @@ class RigidBodies(Term):
         return np.repeat([1.0, reach or 1.0], 3)
 
     def overturned(self) -> str:
-        """A free body that turns by half a turn or more in this part, in a line; empty if none."""
+        """Says which free body turns by half a turn or more in a sub-increment; empty if none."""
         found = (overturned(body, self.contacts[body], self._comm) for body in self.free)
         return next(filter(None, found), "")

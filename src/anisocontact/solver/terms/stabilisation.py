@@ -130,7 +130,7 @@ class Stabilisation(Term):
 
     @property
     def aloft(self) -> bool:
-        """Whether a body that gets springs touches nothing where the part begins; collective.
+        """Whether a body with springs touches nothing where the sub-increment begins; collective.
 
         On bodies that touch, springs that stand against loads on reference points are stiffer than
         it takes, and cost corrections.

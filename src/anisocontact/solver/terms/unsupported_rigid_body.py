@@ -60,7 +60,7 @@ def check_supported(
 
 
 def overturned(body: RigidBody, contacts: Sequence[Contact], comm: Any) -> str:
-    """Whether a free body turns by half a turn or more in this part, in a line; empty if not.
+    """Whether a free body turns by half a turn or more in a sub-increment, in a line; else empty.
 
     Next to nothing holds it then, and friction would be that of a turn the other way, or of none.
     Collective.
@@ -80,7 +80,7 @@ def overturned(body: RigidBody, contacts: Sequence[Contact], comm: Any) -> str:
 def flown(
     body: RigidBody, held: Flags, contacts: Sequence[Contact], extent: float, comm: Any
 ) -> str:
-    """Whether loads move a free body farther in this part than all is long; empty if not.
+    """Whether loads move a free body farther in this sub-increment than all is long; empty if not.
 
     A correction has thrown it then: nothing that it touched is where it is now, and that it rests
     there on something is chance. Collective.
