@@ -77,22 +77,8 @@ def place(whole: Deck, card: Card, part: Deck) -> None:
     }
     for number, (kind, nodes) in part.elements.items():
         whole.elements[more + number] = kind, tuple(more + n for n in nodes)
-    for own, of_part in (
-        (whole.node_sets, part.node_sets),
-        (whole.element_sets, part.element_sets),
-    ):
-        for key, numbers in of_part.items():
-            for full in (f"{name}.{key}".upper(), key):
-                own.setdefault(full, []).extend(more + n for n in numbers)
-            whole.of_parts.add(key)
-    for key, faces in part.surfaces.items():
-        moved = [
-            (f"{name.upper()}.{s}" if s in part.element_sets else str(more + int(s)), face)
-            for s, face in faces
-        ]
-        whole.surfaces[f"{name}.{key}".upper()] = moved
-        whole.surfaces.setdefault(key, []).extend(moved)
-        whole.of_parts.add(key)
+    _name_sets(whole, name, part, more)
+    _name_surfaces(whole, name, part, more)
     for key, profile in part.profiles.items():
         for full in (f"{name}.{key}".upper(), key):
             whole.profiles[full] = profile.placed(moved_to)
@@ -106,6 +92,30 @@ def place(whole: Deck, card: Card, part: Deck) -> None:
         whole.left_out[element] = whole.left_out.get(element, 0) + count
     for step, one in part.cards:
         whole.add_card(step, _of_instance(one, name, part, more))
+
+
+def _name_sets(whole: Deck, name: str, part: Deck, more: int) -> None:
+    """Sets of an instance whose numbers are `more` than those of its part, by both names."""
+    for own, of_part in (
+        (whole.node_sets, part.node_sets),
+        (whole.element_sets, part.element_sets),
+    ):
+        for key, numbers in of_part.items():
+            for full in (f"{name}.{key}".upper(), key):
+                own.setdefault(full, []).extend(more + n for n in numbers)
+            whole.of_parts.add(key)
+
+
+def _name_surfaces(whole: Deck, name: str, part: Deck, more: int) -> None:
+    """Surfaces of an instance in the same way, on its own sets and elements."""
+    for key, faces in part.surfaces.items():
+        moved = [
+            (f"{name.upper()}.{s}" if s in part.element_sets else str(more + int(s)), face)
+            for s, face in faces
+        ]
+        whole.surfaces[f"{name}.{key}".upper()] = moved
+        whole.surfaces.setdefault(key, []).extend(moved)
+        whole.of_parts.add(key)
 
 
 def numbered(card: Card, offsets: Mapping[str, int]) -> Card:
