@@ -106,7 +106,7 @@ class FormBulk:
 
 
 class Dirichlet:
-    """Dirichlet conditions as the system takes them; see `Prescribed`.
+    """Dirichlet conditions as the system takes them; see `PrescribedUnknowns`.
 
     Args:
         bcs: The conditions; their values may change.
