@@ -13,7 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import PointResult, PointState, make_material
-from anisocontact.bulk.strain import STRAINS, LogarithmicStrain, second_difference
+from anisocontact.bulk.strain import STRAINS, LogarithmicStrain, second_divided_difference
 from anisocontact.surfaces import Floats
 
 RUBBER = {"mu": [0.63, 0.0012, -0.01], "alpha": [1.3, 5.0, -2.0], "bulk_modulus": 10.0}
@@ -83,10 +83,10 @@ def test_second_difference_of_the_logarithm() -> None:
     cancellation leaves of 16 digits; three equal arguments give half of the second derivative."""
     a, b = np.array([2.0]), np.array([2.03])
     inside, outside = (
-        second_difference(a, b, np.array([2.0 + 0.05 * 2.03 + s])) for s in (-1e-13, 1e-13)
+        second_divided_difference(a, b, np.array([2.0 + 0.05 * 2.03 + s])) for s in (-1e-13, 1e-13)
     )
     np.testing.assert_allclose(inside, outside, rtol=1e-12)
-    np.testing.assert_allclose(second_difference(a, a, a), -0.125, rtol=1e-15)
+    np.testing.assert_allclose(second_divided_difference(a, a, a), -0.125, rtol=1e-15)
 
 
 def test_ogden_tangent_by_order() -> None:

@@ -124,14 +124,14 @@ def real(x: object) -> Floats | None:
         return None
 
 
-def read_only(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def read_only_view(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """The same numbers, which whoever is given them cannot change.
 
     Returns:
         A view of it.
 
     Example:
-        >>> read_only(np.ones(2))[0] = 3.0
+        >>> read_only_view(np.ones(2))[0] = 3.0
         Traceback (most recent call last):
         ...
         ValueError: assignment destination is read-only

@@ -89,7 +89,7 @@ class LogarithmicStrain:
         inside_out = np.linalg.det(self._deformation) <= 0.0
         self._logs[inside_out] = np.nan
         first = self._squares[:, :, None], self._squares[:, None, :]
-        self._first = 0.5 * first_difference(*first)
+        self._first = 0.5 * divided_difference(*first)
         self.value = spectral(0.5 * self._logs, self._axes)
 
     def piola(self, stress: Floats) -> Floats:
@@ -100,7 +100,7 @@ class LogarithmicStrain:
         """`dH S + F dS`, `dS = 2 dE/dC : dT/dE : dE + 2 T : d2E/dC2 : dC`."""
         axes, t = self._axes, np.swapaxes(self._axes, -1, -2) @ stress @ self._axes
         squares = self._squares
-        second = 0.5 * second_difference(
+        second = 0.5 * second_divided_difference(
             squares[:, :, None, None], squares[:, None, :, None], squares[:, None, None, :]
         )
         n, eye = len(t), np.eye(3)
@@ -160,11 +160,11 @@ def turned(tensor: Floats, axes: Floats) -> Floats:
     return found.reshape(-1, 3, 3, 3, 3)
 
 
-def first_difference(a: Floats, b: Floats) -> Floats:
+def divided_difference(a: Floats, b: Floats) -> Floats:
     """`(ln a - ln b) / (a - b)`, `1/a` where both are the same.
 
     Example:
-        >>> first_difference(np.array([2.0, 2.0]), np.array([2.0, 1.0])).round(12).tolist()
+        >>> divided_difference(np.array([2.0, 2.0]), np.array([2.0, 1.0])).round(12).tolist()
         [0.5, 0.69314718056]
     """
     away = (a - b) / b
@@ -172,12 +172,12 @@ def first_difference(a: Floats, b: Floats) -> Floats:
         return np.where(away == 0.0, 1.0, np.log1p(away) / np.where(away == 0.0, 1.0, away)) / b
 
 
-def second_difference(a: Floats, b: Floats, c: Floats) -> Floats:
+def second_divided_difference(a: Floats, b: Floats, c: Floats) -> Floats:
     """Second divided difference of the logarithm, `-1 / (2 a^2)` where all three are the same.
 
     Example:
         >>> one = np.ones(1)
-        >>> second_difference(one, one, 1.0 + 1e-9 * one).round(6).tolist()
+        >>> second_divided_difference(one, one, 1.0 + 1e-9 * one).round(6).tolist()
         [-0.5]
     """
     low, middle, high = np.sort(np.stack(np.broadcast_arrays(a, b, c)), axis=0)
@@ -189,5 +189,5 @@ def second_difference(a: Floats, b: Floats, c: Floats) -> Floats:
         power = power * x
         sums = sums * y + power
     spread = np.where(y - x < _NEAR, 1.0, high - low)
-    difference = (first_difference(high, middle) - first_difference(middle, low)) / spread
+    difference = (divided_difference(high, middle) - divided_difference(middle, low)) / spread
     return np.where(y - x < _NEAR, series / middle**2, difference)

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from anisocontact.base.arrays import answered, read_only
+from anisocontact.base.arrays import answered, read_only_view
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
 from anisocontact.base.typed import is_number
@@ -56,8 +56,8 @@ class UserLaw:
             InputError: The law fails, or returns something else.
         """
         name, n = type(self._law).__name__, len(state.strain)
-        before = {name: read_only(values) for name, values in state.before.items()}
-        strain, place = read_only(state.strain), read_only(state.place)
+        before = {name: read_only_view(values) for name, values in state.before.items()}
+        strain, place = read_only_view(state.strain), read_only_view(state.place)
         try:
             result = self._law.update(PointState(strain, before, state.dt, place))
         except (Exception, SystemExit) as error:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.arrays import points as points_of
-from anisocontact.base.arrays import read_only
+from anisocontact.base.arrays import read_only_view
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
@@ -136,7 +136,7 @@ class ContactPair:
     @property
     def state(self) -> State:
         """Committed history, one record for each point; read only."""
-        return read_only(self._committed)
+        return read_only_view(self._committed)
 
     @property
     def last(self) -> Response:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.array_types import Codes, Flags, Floats
-from anisocontact.base.arrays import read_only
+from anisocontact.base.arrays import read_only_view
 from anisocontact.base.errors import InputError
 
 #: What could not be done at a point, by its failure code.
@@ -130,7 +130,7 @@ class Response:
         for values in vars(self).values():
             if values is not self.state:
                 values.flags.writeable = False
-        return replace(self, state=read_only(self.state))
+        return replace(self, state=read_only_view(self.state))
 
     @property
     def pressure(self) -> Floats:

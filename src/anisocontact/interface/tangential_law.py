@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.base.arrays import answered, read_only
+from anisocontact.base.arrays import answered, read_only_view
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
 
@@ -195,7 +195,7 @@ def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> 
 def _locked[T: (LawState, LawKinematics)](record: T) -> T:
     """The same record with arrays that a law cannot change: some are the accepted history."""
     parts: dict[str, Any] = vars(record)
-    arrays = {k: read_only(v) for k, v in parts.items() if isinstance(v, np.ndarray)}
+    arrays = {k: read_only_view(v) for k, v in parts.items() if isinstance(v, np.ndarray)}
     return replace(record, **(parts | arrays))
 
 
