@@ -23,8 +23,8 @@ from anisocontact.solver.stepping.limit_load import (
 
 #: Times the friction beyond which none would do, and how exactly the number is found.
 NO_FRICTION, EXACT = 1e3, 1e-3
-#: What a linear program says that has no solution.
-INFEASIBLE = 2
+#: Forces out of balance, of the loads, that are none.
+BALANCED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,17 +85,26 @@ def works(
 def friction_needed(balance: StaticBalance) -> float:
     """How many times the friction it takes for any forces at points to balance loads.
 
+    What is out of balance at least falls with friction. Bisection finds its root, between numbers
+    that Newton's method narrows down: multipliers of the friction limits give the slope.
+
     Returns:
         At least 1; infinite where no friction would do; 1 with more points than can be looked at.
     """
-    if not _looked_at(balance) or _balanced(balance, 1.0):
+    if balance.points > FEW or np.linalg.norm(balance.load) <= NONE * balance.size:
         return 1.0
-    low, high = 1.0, NO_FRICTION
-    if not _balanced(balance, high):
-        return float("inf")
+    low, high, times, root = 1.0, float("inf"), 1.0, 1.0
     while high > (1.0 + EXACT) * low:
-        middle = float(np.sqrt(low * high))
-        low, high = (low, middle) if _balanced(balance, middle) else (middle, high)
+        rest, slope = _out_of_balance(balance, times)
+        if rest <= BALANCED:
+            high = times
+        elif times >= NO_FRICTION or not slope < 0.0:
+            return float("inf")
+        else:
+            low, root = times, times - rest / slope
+        # a root of Newton's method that is balanced is tried to be the least one at once
+        closer = high / (1.0 + 0.9 * EXACT) if root == high else 0.5 * (low + high)
+        times = min(root, NO_FRICTION, closer)
     return high
 
 
@@ -120,24 +129,24 @@ def mechanism(balance: StaticBalance) -> Floats:
     return np.zeros(len(load)) if not found.success else np.asarray(found.eqlin.marginals)
 
 
-def _looked_at(balance: StaticBalance) -> bool:
-    return bool(balance.points <= FEW and np.linalg.norm(balance.load) > NONE * balance.size)
-
-
 def _cones(count: int, times: float) -> scipy.sparse.csr_array:
     """`sum R - times N` of each point."""
     sums = scipy.sparse.kron(scipy.sparse.eye(count), np.ones((1, CORNERS)))
     return scipy.sparse.csr_array(scipy.sparse.hstack([-times * scipy.sparse.eye(count), sums]))
 
 
-def _balanced(balance: StaticBalance, times: float) -> bool:
-    """Whether forces with so many times the friction balance the loads."""
-    count, size = balance.points, float(np.linalg.norm(balance.load))
+def _out_of_balance(balance: StaticBalance, times: float) -> tuple[float, float]:
+    """Least sum of forces out of balance over the loads, and its slope along `times`."""
+    count, rows = balance.points, len(balance.load)
+    rest = scipy.sparse.eye(rows)
+    cones = _cones(count, times)
     found = scipy.optimize.linprog(
-        np.zeros(count * (1 + CORNERS)),
-        A_ub=_cones(count, times),
+        np.concatenate([np.zeros(count * (1 + CORNERS)), np.ones(2 * rows)]),
+        A_ub=scipy.sparse.hstack([cones, scipy.sparse.csr_array((count, 2 * rows))]).tocsr(),
         b_ub=np.zeros(count),
-        A_eq=scipy.sparse.hstack([balance.normal, balance.friction]).tocsr(),
-        b_eq=-balance.load / size,
+        A_eq=scipy.sparse.hstack([balance.normal, balance.friction, rest, -rest]).tocsr(),
+        b_eq=-balance.load / np.linalg.norm(balance.load),
     )
-    return int(found.status) != INFEASIBLE
+    if not found.success:
+        return 0.0, 0.0
+    return float(found.fun), float(found.ineqlin.marginals @ found.x[:count])
