@@ -124,6 +124,10 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: from_callable(PLANE, lambda x: x),
         "lower: (-inf, -inf) is where the surface ends, two finite numbers needed",
     ),
+    "less than no nodes": (
+        lambda: from_callable(PLANE, lambda x: x, **WINDOW | {"counts": (-5, 5)}),
+        "counts: (-5, 5) given, must be > 0",
+    ),
     "callable of another shape": (
         lambda: from_callable(PLANE, lambda x: x[:, :2], **WINDOW),
         "directions of shape (25, 2) given",

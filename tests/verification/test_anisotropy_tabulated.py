@@ -7,6 +7,7 @@ is interpolated. Source: interpolation theory, docs/theory/direction-fields.md.
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -277,3 +278,50 @@ def test_no_direction_where_the_table_does_not_tell() -> None:
     )
     _, valid = scattered.axes(surface, [[0.3, 0.3], [0.0, -1.0], [3.0, 3.0]])
     assert valid.tolist() == [True, False, False]  # three points, one in reach, none
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "bicubic"])
+@pytest.mark.parametrize(("waves", "coarse"), [(10.0, False), (60.0, True), (200.0, True)])
+def test_a_grid_that_is_too_coarse_is_told(interpolation: str, waves: float, coarse: bool) -> None:
+    """Directions that turn by more than a right angle between two nodes.
+
+    Requirement: the table is wrong by any angle between the nodes, all nodes being right, and a
+    warning says so; one that follows is not warned of. Source: lines that turn by 90 degrees and
+    more from node to node cannot be told from others: 60 and 200 radians on 64 cells of 1/32 are
+    107 and 358 degrees a cell, 10 are 18.
+    """
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+
+    def turning(x: Any) -> Any:
+        angle = waves * x[:, 0]
+        return np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
+
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always")
+        from_callable(plane, turning, lower=(-1, -1), upper=(1, 1), interpolation=interpolation)
+    assert [str(one.message).startswith("counts: (65, 65) given, too few") for one in given] == (
+        [True] if coarse else []
+    )
+    assert all(one.filename == __file__ for one in given)
+
+
+def test_poles_and_borders_of_textures_are_not_told_of() -> None:
+    """Rays about a pole between nodes, and two textures side by side: few cells differ there."""
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    fields = (
+        lambda x: x,
+        lambda x: np.where(x[:, :1] > 0.01, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for f in fields:
+            from_callable(plane, f, counts=(64, 64), lower=(-1, -1), upper=(1, 1))
+
+
+def test_a_function_that_knows_the_nodes_alone() -> None:
+    """An array that was made for the nodes is taken as it is."""
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    table = from_callable(
+        plane, lambda _: np.ones((25, 3)), counts=(5, 5), lower=(-1, -1), upper=(1, 1)
+    )
+    assert table.axes(plane, [[0.1, 0.2]])[1].all()

@@ -12,9 +12,10 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Flags, Floats, Pair
 from anisocontact.base.arrays import real
 from anisocontact.base.copied_by_arguments import CopiedByArguments
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, ModelWarning, tell_script
 from anisocontact.base.python_file import called
 from anisocontact.base.sampled import sampled
+from anisocontact.base.shown import shown
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
@@ -22,6 +23,12 @@ Directions = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 
 #: Fields that are given by the coordinates of a surface: facets of a mesh have none of their own.
 BY_COORDINATES = frozenset({"coordinate-lines", "tabulated-grid"})
+#: Angle by which a sampled field may be off within a cell, radian; and the share of cells in which
+#: it may be off by more, as around poles and along the border of two textures.
+_OFF, _MANY = np.radians(5.0), 0.1
+#: Where in a cell that is looked at: what turns by a whole turn from node to node is right in the
+#: middle of them, too, as a line.
+_WITHIN = 0.38
 
 
 class DirectionField(CopiedByArguments):
@@ -132,8 +139,9 @@ def from_callable(
 ) -> DirectionField:
     """A field sampled from any function of the position.
 
-    The function is called once, at the nodes of a grid of the surface's coordinates; between them
-    its directions are interpolated as lines, v and -v being the same.
+    The function is called at the nodes of a grid of the surface's coordinates; between them its
+    directions are interpolated as lines, v and -v being the same. It is called once more within
+    the cells, and a `ModelWarning` says where the grid is too coarse for it.
 
     Args:
         surface: The surface; its periodic coordinates stay so where the grid goes all around.
@@ -160,8 +168,11 @@ def from_callable(
         'tabulated-grid'
     """
     grid = _Grid(surface, counts, lower, upper)
-    x = surface.position(grid.xi)
-    return grid.field(called(f, x, who="the function", field="f"), interpolation)
+
+    def along(xi: Floats) -> Directions:
+        return called(f, surface.position(xi), who="the function", field="f")
+
+    return grid.table(along, interpolation)
 
 
 @typed
@@ -204,13 +215,15 @@ def from_reparametrisation(
         [0.707107, 0.707107, 0.0]
     """
     grid = _Grid(surface, counts, lower, upper)
-    j = sampled(jacobian, grid.xi, (len(grid.xi), 2, 2), field="jacobian")
-    singular = np.flatnonzero(~(np.abs(np.linalg.det(j)) > 0.0))
-    if singular.size:
-        raise InputError(f"singular at xi = {grid.xi[singular[0]].tolist()}", field="jacobian")
-    return grid.field(
-        np.einsum("nji,njk->nik", np.linalg.inv(j), surface.jet(grid.xi).d1), interpolation
-    )
+
+    def along(xi: Floats) -> Directions:
+        j = sampled(jacobian, xi, (len(xi), 2, 2), field="jacobian")
+        singular = np.flatnonzero(~(np.abs(np.linalg.det(j)) > 0.0))
+        if singular.size:
+            raise InputError(f"singular at xi = {xi[singular[0]].tolist()}", field="jacobian")
+        return np.asarray(np.einsum("nji,njk->nik", np.linalg.inv(j), surface.jet(xi).d1))
+
+    return grid.table(along, interpolation)
 
 
 class _Grid:
@@ -232,6 +245,8 @@ class _Grid:
                 raise InputError(
                     f"{values} is where the surface ends, two finite numbers needed", field=name
                 )
+        if not all(n >= 1 for n in counts):
+            raise InputError(f"{counts} given, must be > 0", "counts")
         whole = np.isclose(np.subtract(self.upper, self.lower), np.subtract(ends[1], ends[0]))
         self.periodic = [bool(p and w) for p, w in zip(ends[2], whole, strict=True)]
         lines = [
@@ -240,9 +255,45 @@ class _Grid:
         ]
         self.xi = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
 
-    def field(self, directions: Directions, interpolation: str) -> DirectionField:
-        """The tabulated field of directions at the nodes."""
-        n = len(self.xi)
+    def table(self, along: Callable[[Floats], Directions], interpolation: str) -> DirectionField:
+        """The tabulated field of a function of the coordinates.
+
+        Warns where cells have other directions than those between their nodes.
+        """
+        field = self._field(along(self.xi), interpolation)
+        xi = self._within()
+        try:
+            tangential, size = self._tangential(xi, along(xi))
+        except InputError:  # a function that knows the nodes alone
+            return field
+        axes, known = field.axes(self.surface, xi)
+        told = (size > 0.0).all(axis=1)
+        if not told.any():
+            return field
+        v = tangential[told] / size[told][..., None]
+        cosines = np.abs(np.einsum("nak,nak->na", v, axes[told, : v.shape[1]])).min(axis=1)
+        off = ~known[told] | (cosines < np.cos(_OFF))
+        if off.mean() > _MANY:
+            where = shown(self.surface.position(xi[told][off.argmax()])[0])
+            tell_script(
+                f"counts: {self.counts} given, too few for these directions: within "
+                f"{off.mean():.0%} of the cells they are more than {np.degrees(_OFF):.0f} degrees "
+                f"off what is interpolated, as at x = {where}; more of them follow it",
+                ModelWarning,
+            )
+        return field
+
+    def _within(self) -> Floats:
+        """Coordinates of a point of each cell, (m, 2)."""
+        lines = []
+        for a, b, n, p in zip(self.lower, self.upper, self.counts, self.periodic, strict=True):
+            size = (b - a) / (n if p else n - 1)
+            lines.append(a + size * (np.arange(n if p else n - 1) + _WITHIN))
+        return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+
+    def _tangential(self, xi: Floats, directions: Directions) -> tuple[Floats, Floats]:
+        """Directions along the surface, (n, 1 or 2, 3), and their lengths over those given."""
+        n = len(xi)
         v = real(directions)
         if v is None:
             text = " ".join(f"{directions!r:.60}".split())
@@ -253,14 +304,19 @@ class _Grid:
             v = v[:, None]
         if v.shape not in ((n, 1, 3), (n, 2, 3)):
             raise InputError(f"directions of shape {v.shape} given, (n, 3) or (n, 2, 3) needed")
-        normal = self.surface.geometry(self.xi).normal
+        normal = self.surface.geometry(xi).normal
         tangential = v - np.einsum("nak,nk->na", v, normal)[..., None] * normal[:, None]
         size = np.linalg.norm(tangential, axis=2)
-        wrong = np.flatnonzero(~(size > 1e-8 * np.linalg.norm(v, axis=2)).all(axis=1))
+        return tangential, np.where(size > 1e-8 * np.linalg.norm(v, axis=2), size, 0.0)
+
+    def _field(self, directions: Directions, interpolation: str) -> DirectionField:
+        """The tabulated field of directions at the nodes."""
+        tangential, size = self._tangential(self.xi, directions)
+        wrong = np.flatnonzero(~(size > 0.0).all(axis=1))
         if wrong.size:
             where = self.surface.position(self.xi[wrong[0]])[0].tolist()
             raise InputError(f"no direction along the surface at x = {where}", field="directions")
-        second = {"second_vectors": tangential[:, 1]} if len(v[0]) == 2 else {}
+        second = {"second_vectors": tangential[:, 1]} if tangential.shape[1] == 2 else {}
         return make_directions(
             "tabulated-grid",
             lower=self.lower,
