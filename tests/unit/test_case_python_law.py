@@ -289,3 +289,37 @@ def test_people_are_told_that_check_runs_python(capsys):
     assert main(["schema"]) == 0
     files = json.loads(capsys.readouterr().out)["$defs"]["Python"]["properties"]["file"]
     assert "`check --no-python` does not" in files["description"]
+
+
+#: A law whose force is along the slip, or against it with what it dissipates of the wrong sign.
+DRIVING = """
+import numpy as np
+from anisocontact.interface import LawResult
+
+class Smooth:
+    internal = 0
+
+    def update(self, state, kinematics):
+        slip, pressure = kinematics.increment, kinematics.pressure[:, None]
+        block, factor = np.zeros((len(slip), 2, 2)), FACTOR
+        traction = factor * pressure * slip
+        return LawResult(traction, slip, factor * pressure[..., None] * np.eye(2), factor * slip,
+                         block, block, state.internal, -np.sum(traction * slip, axis=1),
+                         np.zeros(len(slip)))
+"""
+
+
+@pytest.mark.parametrize(("factor", "told"), [("5.0", True), ("-5.0", False)])
+def test_a_law_that_gives_energy_is_told(tmp_path, capsys, factor, told):
+    """Requirement: a force along the slip is a warning that names the contact, at once and at the
+    end, though its energy is in balance: what supports take the law has given. Source: friction
+    that dissipates less than nothing is none.
+    """
+    path = smooth(tmp_path, (SMOOTH, DRIVING.replace("FACTOR", factor)))
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 0
+    said = "contact 'block.bottom on plate': its law gave "
+    assert (said in capsys.readouterr().err) == told
+    summary = numbers(tmp_path, "out")
+    assert any(said in line for line in summary["warnings"]) == told
+    assert (summary["energy"]["friction"] < 0.0) == told
+    assert summary["energy_residual"]["worst_share"] < 0.05

@@ -19,9 +19,14 @@ class _Points:
     """A contact of 20 points, of which the numbers of each status are given."""
 
     facet_size = 1.0
+    name = "pad on disc"
 
     def __init__(self, *numbers: int) -> None:
         self.numbers = numbers
+        self.heat = {"friction": 0.0, "viscous": 0.0}
+
+    def energies(self) -> dict[str, float]:
+        return dict(self.heat)
 
     def counts(self) -> dict[str, int]:
         return dict(zip(STATUS, self.numbers, strict=True))
@@ -188,3 +193,18 @@ def test_statuses_are_followed_while_dissipation_falls(watch: Any) -> None:
     assert made.after(energies, ran_off=False).cause == Cause.HEAT_FELL
     energies |= {"residual": 1.0}
     assert made.after(energies, ran_off=False).cause == Cause.COARSE
+
+
+def test_a_contact_that_gives_energy_is_named(watch: Any) -> None:
+    """Requirement: also where the balance closes, and by an increment that is behind a restart."""
+    made, points = watch()
+    energies = {"external": 10.0, "residual": 0.0, "regularisation": 0.0}
+    points.heat = {"friction": 5.0, "viscous": 1.0}
+    assert not made.after(energies, ran_off=False).driven
+    again = EnergyWatch(made._problem)
+    again.restore(made.persistent())
+    again.begin()
+    points.heat = {"friction": 3.0, "viscous": 2.0}
+    assert again.after(energies, ran_off=False).driven == {"pad on disc": 0.1}
+    points.heat["friction"] -= 1e-7  # rounding
+    assert not again.after(energies, ran_off=False).driven

@@ -52,6 +52,8 @@ DISSIPATED = ("friction", "viscous", "inelastic")
 #: Share of the residual of an increment from which on dissipation that falls is what made it. One
 #: with the wrong sign leaves twice itself open.
 FELL = 0.25
+#: Share of the work from which on a contact that dissipates less than nothing is told.
+GAVE = 1e-6
 _ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
 
 
@@ -73,9 +75,11 @@ class EnergyWatch:
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(Cause))
         self._begun = self._overlap = self.pushed_apart = False
+        self._by_contact: Floats = np.zeros(len(problem.contacts))
 
     def begin(self) -> None:
         """Start from the accepted state, unless a run goes on."""
+        self._by_contact = self._dissipated()
         if self._begun:
             return
         self._begun = True
@@ -117,7 +121,7 @@ class EnergyWatch:
         self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
         worst = list(Cause)[int(np.abs(self._parts).argmax())]
-        return Imbalance(share, worst.value if share > 0.0 else "")
+        return Imbalance(share, worst.value if share > 0.0 else "", self._driven())
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""
@@ -207,6 +211,21 @@ class EnergyWatch:
         if not (before[:, 1:].any() and self._counts[:, 1:].any()):
             many = 0.0
         return touched > many and touched >= slid, slid > many
+
+    def _driven(self) -> dict[str, float]:
+        """What contacts gave in the increment where they should have dissipated, over the work."""
+        before, self._by_contact = self._by_contact, self._dissipated()
+        given = before - self._by_contact
+        return {
+            contact.name: float(energy / max(energy, self._work))
+            for contact, energy in zip(self._problem.contacts, given, strict=True)
+            if energy > GAVE * self._work
+        }
+
+    def _dissipated(self) -> Floats:
+        """What each contact has dissipated, (contacts,), energy."""
+        totals = [c.energies() for c in self._problem.contacts]
+        return np.array([one["friction"] + one["viscous"] for one in totals])
 
     def _counted(self) -> Ints:
         counts = [[c.counts()[name] for name in STATUS] for c in self._problem.contacts]

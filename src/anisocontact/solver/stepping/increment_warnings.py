@@ -30,6 +30,11 @@ FAR = (
     "body {name!r}, at small strain, is strained by {strain:.2g} as a whole, and forces are off by "
     "a share of that size; {cure}"
 )
+#: What is said of a law that pushes along the slip.
+DRIVEN = (
+    "its law gave {share:.2g} of the work done so far where friction takes energy: a tangential "
+    "force pushes along the slip, or a dissipation is returned with the wrong sign"
+)
 #: What is said of a state that is in equilibrium and not stable.
 UNSTABLE = (
     "the equilibrium is not stable, as beyond the load of buckling: its tangent has a negative "
@@ -106,6 +111,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for name, count in accepted.undetermined.items():
         points = "slave point touches" if count == 1 else "slave points touch"
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
+    for name, share in accepted.imbalance.driven.items():
+        yield f"driven {name}", f"contact {name!r}: {DRIVEN.format(share=share)}"
     for name, stride in accepted.rolled.items():
         yield f"rolled {name}", f"contact {name!r}: {stride}"
     for name, faces in accepted.faces.items():

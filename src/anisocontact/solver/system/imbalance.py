@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 #: Share of the work beyond which the residual is worth a warning.
 LARGE = 0.05
@@ -17,10 +18,13 @@ class Imbalance:
             the energies stored and dissipated where these are larger; 0 where both are round-off
             or a body or law stores no energy.
         cause: What most of it came from; empty where there is none.
+        driven: Energy that a law gave in the increment where it should have dissipated, over the
+            work done so far, by name of the contact; contacts that gave none are left out.
     """
 
     share: float
     cause: str
+    driven: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def large(self) -> bool:
