@@ -93,6 +93,7 @@ def test_what_a_script_draws_is_read_only():
     for _ in Solver(problem, [Step("press", 2, displacement=down)]).run():
         last = contact.last
         given = [last.pressure, last.gap, last.traction, last.normal, last.state, problem.nodal]
+        given += [contact.areas, contact.points]
         for values in (*given, last.directions_friction, contact.state["pressure"]):
             with pytest.raises(ValueError, match="read-only"):
                 values[:] = 0.0

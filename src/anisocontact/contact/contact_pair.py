@@ -125,13 +125,13 @@ class ContactPair:
 
     @property
     def points(self) -> Floats:
-        """Slave points where they are after the accepted increment, (n, 3), length."""
-        return self.accepted.points
+        """Slave points after the accepted increment, (n, 3), length; read only."""
+        return read_only_view(self.accepted.points)
 
     @property
     def areas(self) -> Floats:
-        """Area of each slave point after the accepted increment, (n,), length^2."""
-        return self.accepted.areas
+        """Area of each slave point after the accepted increment, (n,), length^2; read only."""
+        return read_only_view(self.accepted.areas)
 
     @property
     def state(self) -> State:
