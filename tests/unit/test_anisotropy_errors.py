@@ -128,6 +128,10 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: from_callable(PLANE, lambda x: x, **WINDOW | {"counts": (-5, 5)}),
         "counts: (-5, 5) given, must be > 0",
     ),
+    "far too many nodes": (
+        lambda: from_callable(PLANE, lambda x: x, **WINDOW | {"counts": (10**6, 10**6)}),
+        "counts: (1000000, 1000000) given, 1.0e+12 nodes, at most 1e+07 allowed",
+    ),
     "callable of another shape": (
         lambda: from_callable(PLANE, lambda x: x[:, :2], **WINDOW),
         "directions of shape (25, 2) given",

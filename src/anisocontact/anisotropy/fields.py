@@ -26,6 +26,8 @@ BY_COORDINATES = frozenset({"coordinate-lines", "tabulated-grid"})
 #: Angle by which a sampled field may be off within a cell, radian; and the share of cells in which
 #: it may be off by more, as around poles and along the border of two textures.
 _OFF, _MANY = np.radians(5.0), 0.1
+#: More nodes than a field has use for; their directions take a quarter of a gigabyte.
+_MOST_NODES = 10**7
 #: Where in a cell that is looked at: what turns by a whole turn from node to node is right in the
 #: middle of them, too, as a line.
 _WITHIN = 0.38
@@ -247,6 +249,9 @@ class _Grid:
                 )
         if not all(n >= 1 for n in counts):
             raise InputError(f"{counts} given, must be > 0", "counts")
+        if (count := counts[0] * counts[1]) > _MOST_NODES:
+            text = f"{counts} given, {count:.1e} nodes, at most {_MOST_NODES:.0e} allowed"
+            raise InputError(text, "counts")
         whole = np.isclose(np.subtract(self.upper, self.lower), np.subtract(ends[1], ends[0]))
         self.periodic = [bool(p and w) for p, w in zip(ends[2], whole, strict=True)]
         lines = [
