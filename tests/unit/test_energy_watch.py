@@ -208,3 +208,14 @@ def test_a_contact_that_gives_energy_is_named(watch: Any) -> None:
     assert again.after(energies, ran_off=False).driven == {"pad on disc": 0.1}
     points.heat["friction"] -= 1e-7  # rounding
     assert not again.after(energies, ran_off=False).driven
+
+
+def test_rounding_before_any_work_is_no_energy_that_a_contact_gives(
+    watch: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Requirement: where nothing has done work yet a share of it says nothing."""
+    made, points = watch()
+    monkeypatch.setattr(EnergyWatch, "_rounded", lambda _: 1e-25)
+    points.heat["friction"] = -1e-30
+    energies = {"external": 0.0, "residual": 0.0, "regularisation": 0.0}
+    assert not made.after(energies, ran_off=False).driven

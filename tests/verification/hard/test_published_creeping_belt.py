@@ -18,8 +18,8 @@ Requirement: creep of the last three increments, each of a facet; nodes slip up 
 those of order 1 stick beyond it, but where they have just come on; corrections. Tolerance: measured
 8 % with 30 facets of order 1 on the quarter, 0.8 % with 30 of order 2 and 0.06 % with 60 of order
 1, since facets are straight between their nodes; slip to 1.5 facets, while of order 2 single nodes
-slip farther on. Corrections: 22 to 94 in each of these, at most 200 in the first increment of the
-turn, in which nothing but friction on its verge holds the belt; until all has come on under T1 ten.
+slip farther on. Corrections: measured 22 to 94 in each of these, and 142 to 194 in the first
+increment of the turn, in which nothing but friction on its verge holds the belt.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ def test_creep(tmp_path: Path, cells: int, order: int, error: float) -> None:
     ways = np.abs(np.diff(gone, axis=0))[-3:]
     creep = 1.0 - ways[:, 1] / ways[:, 0]
     np.testing.assert_allclose(creep, 1.0 - second / first, rtol=error)
-    assert max(taken[-3:]) <= 110
+    assert max(taken[-3:]) <= 110 and max(taken) <= 220
     angles, slipping = slips(solver.problem)
     share = (RADIUS + 0.5 * THICK) / RADIUS
     edge = np.degrees(np.log(LOADS[0] / LOADS[1]) / FRICTION * share)

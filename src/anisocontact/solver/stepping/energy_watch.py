@@ -216,10 +216,13 @@ class EnergyWatch:
         """What contacts gave in the increment where they should have dissipated, over the work."""
         before, self._by_contact = self._by_contact, self._dissipated()
         given = before - self._by_contact
+        if not (given > GAVE * self._work).any():
+            return {}
+        least = max(GAVE * self._work, self._rounded())
         return {
             contact.name: float(energy / max(energy, self._work))
             for contact, energy in zip(self._problem.contacts, given, strict=True)
-            if energy > GAVE * self._work
+            if energy > least
         }
 
     def _dissipated(self) -> Floats:
