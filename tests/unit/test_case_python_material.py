@@ -142,3 +142,26 @@ def test_changed_file_ends_a_restart(tmp_path: Path, capsys: pytest.CaptureFixtu
     _case(tmp_path, "Stress", change=("F - ufl", "2 * F - 2 * ufl"))
     assert main(["run", case, "-o", str(out), "--restart"]) != 0
     assert "material.bar.file: 'own.py' has changed" in capsys.readouterr().err
+
+
+#: A spring that tells twice what it stores, and what is too much as dissipated below nothing.
+GIVING = """        after = {"times": 0.5 * np.einsum("nij,nij->n", stress, state.strain)}
+        grown = after["times"] - state.before["times"]
+        return PointResult(stress, slope, after, (1.0 + MORE) * after["times"], -MORE * grown)"""
+
+
+@pytest.mark.parametrize(("more", "told"), [("1.0", True), ("0.0", False)])
+def test_a_material_that_gives_energy_is_told(tmp_path, capsys, more, told):
+    """Requirement: dissipation below zero is a warning that names the body, though the balance of
+    energy closes: what is stored is as much too large. Source: the second law.
+    """
+    end = '        after = {"times": state.before["times"] + 1.0}\n'
+    end += "        return PointResult(stress, slope, after)"
+    case = _case(tmp_path, "Counting", change=(end, GIVING.replace("MORE", more)))
+    assert main(["run", case, "-o", str(tmp_path / "out")]) == 0
+    said = "increment 1: body 'bar': its material gave "
+    assert (said in capsys.readouterr().err) == told
+    summary = Results(tmp_path / "out").summary
+    assert any(said in line for line in summary["warnings"]) == told
+    assert (summary["energy"]["inelastic"] < 0.0) == told
+    assert summary["energy_residual"]["worst_share"] < 1e-8

@@ -24,6 +24,7 @@ class _Points:
     def __init__(self, *numbers: int) -> None:
         self.numbers = numbers
         self.heat = {"friction": 0.0, "viscous": 0.0}
+        self.bodies: dict[str, float] = {}
 
     def energies(self) -> dict[str, float]:
         return dict(self.heat)
@@ -40,7 +41,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Any:
         points = _Points(20 - sticking, sticking, 0)
         problem: Any = SimpleNamespace(
             contacts=[points],
-            bulk=SimpleNamespace(stores=True),
+            bulk=SimpleNamespace(stores=True, dissipated_by_body=lambda: dict(points.bodies)),
             energies=lambda: {"external": 0.0, "residual": 0.0, "regularisation": 0.0},
         )
         monkeypatch.setattr(energy_watch, "initial_overlap", lambda *_: overlap)
@@ -219,3 +220,14 @@ def test_rounding_before_any_work_is_no_energy_that_a_contact_gives(
     points.heat["friction"] = -1e-30
     energies = {"external": 0.0, "residual": 0.0, "regularisation": 0.0}
     assert not made.after(energies, ran_off=False).driven
+
+
+def test_a_material_that_gives_energy_is_named(watch: Any) -> None:
+    """Requirement: its body, though another one dissipates more than that."""
+    made, points = watch()
+    energies = {"external": 10.0, "residual": 0.0, "regularisation": 0.0}
+    points.bodies = {"disc": 1.0, "pad": 1.0}
+    assert not made.after(energies, ran_off=False).driven_by
+    points.bodies = {"disc": 5.0, "pad": 0.0}
+    found = made.after(energies, ran_off=False)
+    assert (found.driven_by, found.driven) == ({"pad": 0.1}, {})

@@ -91,6 +91,11 @@ class AtPoints:
         """What a stretch by temperature gives to the displacement now, (n,), energy/volume."""
         raise NotImplementedError
 
+    @property
+    def own_cells(self) -> Locals:
+        """Cells of the body that this rank owns, (n,)."""
+        return self._cells[: self._owned]
+
     def means(self, name: str) -> tuple[Locals, Floats]:
         """Cells of the body on this rank, (n,), and means over their points of a number."""
         values = self._read(self.variables[name])

@@ -116,6 +116,10 @@ class LinearBulk:
         self._u.x.array[:] = u.x.array
         self._pressures.evaluate()
 
+    def dissipated_by_body(self) -> dict[str, float]:
+        """No body has a history."""
+        return {}
+
     def dissipated(self) -> float:
         """Linear materials dissipate nothing."""
         return 0.0

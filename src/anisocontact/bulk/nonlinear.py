@@ -62,10 +62,10 @@ class NonlinearBulk:
         self._tangent = FormMatrix(compiled(tangent, self._comm))
         self._pressures.add_tangent(self._tangent.matrix)
         self._model, self._energy_form = model, forms.elastic + forms.stored
-        self._elastic, self._stored, self._dissipated = (
-            compiled(form, self._comm) if form else None
-            for form in (forms.elastic, forms.stored, forms.dissipated)
+        self._elastic, self._stored = (
+            compiled(form, self._comm) if form else None for form in (forms.elastic, forms.stored)
         )
+        self._dissipated = CellIntegrals(forms.dissipated, model) if forms.dissipated else None
         #: Whether `energy` is that of all bodies: every material has one.
         self.stores = forms.told
         self.stiffness = self._tangent.matrix
@@ -197,7 +197,16 @@ class NonlinearBulk:
 
     def dissipated(self) -> float:
         """What materials have dissipated until the accepted state, over all ranks."""
-        return self._total(self._dissipated)
+        return sum(self.dissipated_by_body().values())
+
+    def dissipated_by_body(self) -> dict[str, float]:
+        """What each body with a history has dissipated until the accepted state, over all ranks."""
+        if self._dissipated is None:
+            return {}
+        of_cells = self._dissipated()
+        own = [of_cells[body.own_cells].sum() for body in self.histories.values()]
+        found = self._comm.allreduce(np.array(own))
+        return dict(zip(self.histories, found.tolist(), strict=True))
 
     def tangent(self, out: Mat, *, again: bool = False) -> None:
         """Write the tangent of the last `force` into a matrix.

@@ -52,7 +52,7 @@ DISSIPATED = ("friction", "viscous", "inelastic")
 #: Share of the residual of an increment from which on dissipation that falls is what made it. One
 #: with the wrong sign leaves twice itself open.
 FELL = 0.25
-#: Share of the work from which on a contact that dissipates less than nothing is told.
+#: Share of the work from which on a contact or material that dissipates less than nothing is told.
 GAVE = 1e-6
 _ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
 
@@ -75,11 +75,12 @@ class EnergyWatch:
         self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(Cause))
         self._begun = self._overlap = self.pushed_apart = False
-        self._by_contact: Floats = np.zeros(len(problem.contacts))
+        self._by_contact: dict[str, float] = {}
+        self._by_body: dict[str, float] = {}
 
     def begin(self) -> None:
         """Start from the accepted state, unless a run goes on."""
-        self._by_contact = self._dissipated()
+        self._given()
         if self._begun:
             return
         self._begun = True
@@ -121,7 +122,7 @@ class EnergyWatch:
         self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
         worst = list(Cause)[int(np.abs(self._parts).argmax())]
-        return Imbalance(share, worst.value if share > 0.0 else "", self._driven())
+        return Imbalance(share, worst.value if share > 0.0 else "", *self._given())
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""
@@ -212,23 +213,29 @@ class EnergyWatch:
             many = 0.0
         return touched > many and touched >= slid, slid > many
 
-    def _driven(self) -> dict[str, float]:
-        """What contacts gave in the increment where they should have dissipated, over the work."""
-        before, self._by_contact = self._by_contact, self._dissipated()
-        given = before - self._by_contact
-        if not (given > GAVE * self._work).any():
+    def _given(self) -> tuple[dict[str, float], dict[str, float]]:
+        """What contacts and bodies gave since the last call where they should have dissipated.
+
+        Returns:
+            Energies over the work done so far, by name; of those that gave some.
+        """
+        before = self._by_contact, self._by_body
+        energies = {contact.name: contact.energies() for contact in self._problem.contacts}
+        self._by_contact = {name: e["friction"] + e["viscous"] for name, e in energies.items()}
+        self._by_body = self._problem.bulk.dissipated_by_body()
+        return self._fallen(before[0], self._by_contact), self._fallen(before[1], self._by_body)
+
+    def _fallen(self, before: Mapping[str, float], now: Mapping[str, float]) -> dict[str, float]:
+        """By how much dissipation has fallen, over the work; that of those where it has."""
+        given = {name: before.get(name, 0.0) - energy for name, energy in now.items()}
+        if not any(energy > GAVE * self._work for energy in given.values()):
             return {}
         least = max(GAVE * self._work, self._rounded())
         return {
-            contact.name: float(energy / max(energy, self._work))
-            for contact, energy in zip(self._problem.contacts, given, strict=True)
+            name: energy / max(energy, self._work)
+            for name, energy in given.items()
             if energy > least
         }
-
-    def _dissipated(self) -> Floats:
-        """What each contact has dissipated, (contacts,), energy."""
-        totals = [c.energies() for c in self._problem.contacts]
-        return np.array([one["friction"] + one["viscous"] for one in totals])
 
     def _counted(self) -> Ints:
         counts = [[c.counts()[name] for name in STATUS] for c in self._problem.contacts]

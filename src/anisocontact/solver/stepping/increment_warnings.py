@@ -35,6 +35,11 @@ DRIVEN = (
     "its law gave {share:.2g} of the work done so far where friction takes energy: a tangential "
     "force pushes along the slip, or a dissipation is returned with the wrong sign"
 )
+#: What is said of a material that gives energy.
+FED = (
+    "its material gave {share:.2g} of the work done so far where materials dissipate: what it says "
+    "it has `dissipated` is negative"
+)
 #: What is said of a state that is in equilibrium and not stable.
 UNSTABLE = (
     "the equilibrium is not stable, as beyond the load of buckling: its tangent has a negative "
@@ -113,6 +118,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"
     for name, share in accepted.imbalance.driven.items():
         yield f"driven {name}", f"contact {name!r}: {DRIVEN.format(share=share)}"
+    for name, share in accepted.imbalance.driven_by.items():
+        yield f"fed {name}", f"body {name!r}: {FED.format(share=share)}"
     for name, stride in accepted.rolled.items():
         yield f"rolled {name}", f"contact {name!r}: {stride}"
     for name, faces in accepted.faces.items():

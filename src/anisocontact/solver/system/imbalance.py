@@ -20,11 +20,13 @@ class Imbalance:
         cause: What most of it came from; empty where there is none.
         driven: Energy that a law gave in the increment where it should have dissipated, over the
             work done so far, by name of the contact; contacts that gave none are left out.
+        driven_by: The same of materials, by name of the body.
     """
 
     share: float
     cause: str
     driven: Mapping[str, float] = field(default_factory=dict)
+    driven_by: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def large(self) -> bool:
