@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -165,9 +166,11 @@ def _run_and_close(
         for line in traceback.format_exc().splitlines():
             writer.log(line)
         if lacking is None:
-            writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
+            with suppress(WriteError):  # the reason is what is told
+                writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
             raise RunError(f"{text}; {_details(writer)}") from error
-    writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
+    with suppress(WriteError):  # the summary has it
+        writer.close(end.status, end.message, [*doubts, *built.solver.doubtful])
     return end.curable
 
 

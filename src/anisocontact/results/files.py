@@ -82,9 +82,13 @@ class Disk:
         Raises:
             WriteError: A disk is full, or a folder gone or protected.
         """
-        self._failure = next(filter(None, self.comm.allgather(self._failure)), "")
-        if self._failure:
+        if self.failure():
             raise WriteError(self._failure)
+
+    def failure(self) -> str:
+        """What has failed first on any of the ranks; empty where nothing has; collective."""
+        self._failure = next(filter(None, self.comm.allgather(self._failure)), "")
+        return self._failure
 
 
 def write_text(path: Path, text: str) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from anisocontact.base.errors import one_line, tell_script
 from anisocontact.base.typed import typed
-from anisocontact.results.files import check_folder
+from anisocontact.results.files import WriteError, check_folder
 from anisocontact.results.lock import locked
 from anisocontact.results.output_options import Labels, OutputOptions
 from anisocontact.results.writer import Writer
@@ -49,6 +50,7 @@ def recorded(
     Raises:
         InputError: The folder holds an earlier run or something else, or cannot be made.
         StoppedError: An increment did not converge, as of `Solver.run`.
+        WriteError: A file cannot be written.
 
     Example:
         >>> import tempfile
@@ -92,14 +94,17 @@ def _run(
                 yield accepted
         except StoppedError as stop:
             writer.log_stop(str(stop), stop.culprits, stop.failed)
-            writer.close("stopped", str(stop), solver.doubtful)
+            with suppress(WriteError):  # why the run stopped is what is raised
+                writer.close("stopped", str(stop), solver.doubtful)
             raise
         except BaseException as error:
             left = isinstance(error, GeneratorExit)
             said = "left by the script" if left else one_line(f"{type(error).__name__}: {error}")
             if left and comm.size == 1:
-                writer.close("stopped", said, solver.doubtful)
+                with suppress(WriteError):
+                    writer.close("stopped", said, solver.doubtful)
             else:  # others may wait elsewhere
                 writer.abandon(said)
             raise
-        writer.close("done", "", solver.doubtful)
+        if unwritten := writer.close("done", "", solver.doubtful):
+            tell_script(unwritten)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.contact import Contact
+from anisocontact.contact import Contact, facet_size
 from anisocontact.results.quantities import CONTACT, RIGID, numbers
 from anisocontact.results.resultants import Resultant, check_resultants, resultant
 from anisocontact.results.round_area import SymmetryImages, round_radius
@@ -239,3 +239,22 @@ def exact_laws(contact: Contact) -> list[str]:
     trials = contact.trials
     found = {"normal": trials.augmented, "adhesion": not trials.does_work}
     return [name for name, exact in found.items() if exact]
+
+
+def constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]:
+    """What stays the same of each contact for the whole run.
+
+    Args:
+        problem: The problem.
+        masters: Names of the masters of its contacts.
+    """
+    return [
+        {
+            "slave": contact.slave,
+            "master": master,
+            "facet_size": facet_size(problem.model, contact.slave),
+            "laws": laws(contact),
+            "multipliers": exact_laws(contact),
+        }
+        for contact, master in zip(problem.contacts, masters, strict=True)
+    ]

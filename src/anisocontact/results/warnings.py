@@ -42,6 +42,8 @@ ROUNDING = 1e-5
 NORMAL = "a larger normal penalty"
 #: Share of the external work beyond which energy of stabilisation, or regularisation, is told.
 STABILISED = 0.05
+#: What is said where everything is written but the report.
+UNREPORTED = "no report: {lost}; where there is room: anisocontact report {folder}"
 #: What the summary has the largest value over the run of, and the quantity that it is of.
 _WORST = {
     "penetration": "max_penetration",

@@ -14,13 +14,19 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.base.errors import InputError, printable
-from anisocontact.contact import facet_size
 from anisocontact.contact.narrow import narrow_so_far
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint_times import Checkpoints
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
-from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
+from anisocontact.results.files import (
+    FAILED,
+    Disk,
+    WriteError,
+    clear,
+    clear_drafts,
+    write_text,
+)
 from anisocontact.results.history import HistoryTable
 from anisocontact.results.master_patches import MasterPatches
 from anisocontact.results.no_energy import energies_by_name, finite
@@ -29,9 +35,10 @@ from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
 from anisocontact.results.report_process import Reporter, report_here
-from anisocontact.results.snapshot import Observer, exact_laws, laws
+from anisocontact.results.snapshot import Observer, constants
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import (
+    UNREPORTED,
     at_end,
     at_start,
     narrow,
@@ -92,7 +99,7 @@ class Writer:
         self._checkpoints = Checkpoints(self.folder, problem.model, options.checkpoint_every)
         self._observer = Observer(problem, self._steps, options.resultants)
         self._disk.write(lambda: self._open(case, resumed is not None))
-        self._constants = _constants(problem, labels.masters or [c.name for c in problem.contacts])
+        self._constants = constants(problem, labels.masters or [c.name for c in problem.contacts])
         self._history = HistoryTable(self.folder / "history.csv")
         self._bodies = BodyGrid(problem, options.quantities)
         self._probes = self._probe_tables(options.probes)
@@ -276,13 +283,19 @@ class Writer:
             said = f"{FAILED} is not written: {error}"
         self._disk.write_each(lambda: self._append(said))
 
-    def close(self, status: str, message: str = "", doubtful: Sequence[str] = ()) -> None:
+    def close(self, status: str, message: str = "", doubtful: Sequence[str] = ()) -> str:
         """Write the end of the run and its report.
 
         Args:
             status: "done" or "stopped".
             message: Why it stopped.
             doubtful: What is to be said of the case and its steps, beside what happened.
+
+        Returns:
+            A warning, that there is no report, which the files do not have; empty if there is.
+
+        Raises:
+            WriteError: What converged last could not be written, why is in `summary`.
         """
         self._checkpoints.rescue()
         self._fields.close(self.summary["time"])
@@ -301,8 +314,17 @@ class Writer:
         self._write_summary()
         if self._options.vtkhdf:
             self._disk.write(self._write_vtkhdf)
+        if lost := self._disk.failure():
+            reasons = dict.fromkeys(filter(None, (message, lost)))
+            self.summary |= {"status": "stopped", "message": "; ".join(reasons)}
+            raise WriteError(lost)
         if self._options.pictures:
             self._disk.write(self._report)
+        if not (lost := self._disk.failure()):
+            return ""
+        said = UNREPORTED.format(lost=lost, folder=self.folder)
+        self.summary["warnings"].append(said)
+        return said
 
     def abandon(self, message: str, details: str = "") -> None:
         """Note the end of a run in which the other processes are stuck; any of them may do it.
@@ -370,20 +392,6 @@ class Writer:
         energy = energies_by_name(self.summary.get("energy", {}))
         content = finite(self.summary | {"energy": energy})
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
-
-
-def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]:
-    """What stays the same of each contact for the whole run."""
-    return [
-        {
-            "slave": contact.slave,
-            "master": master,
-            "facet_size": facet_size(problem.model, contact.slave),
-            "laws": laws(contact),
-            "multipliers": exact_laws(contact),
-        }
-        for contact, master in zip(problem.contacts, masters, strict=True)
-    ]
 
 
 def _event(accepted: Accepted) -> dict[str, Any]:

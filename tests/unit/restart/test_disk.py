@@ -15,6 +15,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import RunWarning
 from anisocontact.cli import main
 from anisocontact.results import checkpoint
 from anisocontact.results.files import Disk, WriteError
@@ -89,6 +90,57 @@ def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim, sam
         assert stored.facts["writer"]["summary"]["steps"] >= 2
     assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
     assert same(whole, out)
+
+
+def test_a_disk_that_is_full_at_the_end_is_told(monkeypatch, capsys, case, whole, same):
+    """Requirement: a run whose last numbers cannot be written has not ended in order, and ends so
+    when it goes on."""
+    from anisocontact.results import writer
+
+    real = writer.write_text
+
+    def failing(path, text):
+        if path.name == "summary.json" and json.loads(text)["status"] == "done":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+        real(path, text)
+
+    out = case.parent / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr(writer, "write_text", failing)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    error = capsys.readouterr().err.splitlines()
+    said = f"error: stopped: cannot write '{out / 'summary.json'}': No space left on device"
+    assert error[0].startswith(said)
+    assert error[-1].startswith("to go on: anisocontact run ")
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    assert same(whole, out)
+
+
+@pytest.mark.parametrize("script", [False, True])
+def test_a_report_for_which_there_is_no_room_is_a_warning(monkeypatch, capsys, case, script):
+    """Requirement: one line that says why there are no pictures, and how they are made later."""
+    from anisocontact.case.build import build
+    from anisocontact.case.read import load
+    from anisocontact.results import recorded, writer
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "report.html")
+
+    out = case.parent / "out"
+    case.write_text(case.read_text().replace("pictures = false", "pictures = true"))
+    monkeypatch.setattr(writer.Writer, "_report", full)
+    said = (
+        "no report: cannot write 'report.html': No space left on device; where there is room: "
+        f"anisocontact report {out}"
+    )
+    if script:
+        solver = build(load(case)).solver
+        with pytest.warns(RunWarning, match=re.escape(said)):
+            assert list(recorded(solver, out))
+    else:
+        assert main(["run", str(case), "-o", str(out)]) == 0
+        assert f"warning: {said}" in capsys.readouterr().err.splitlines()
+    assert json.loads((out / "summary.json").read_text())["status"] == "done"
 
 
 def test_files_that_may_not_grow(case, whole, same):
