@@ -8,8 +8,8 @@ from anisocontact.base.errors import InputError
 from anisocontact.bulk import Material
 from anisocontact.case.model import AUGMENTED, MORTAR, PENALTY, SINGLE, ContactSection
 from anisocontact.case.quantity import AUTO
+from anisocontact.contact.augmentable_laws import check, simultaneous
 from anisocontact.contact.defaults import takes_nodes
-from anisocontact.contact.multipliers import check, simultaneous
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
+from anisocontact.contact.beyond_border import BeyondBorder
 from anisocontact.contact.facet_answer import ByPoints, FacetAnswer, FacetEvaluation
 from anisocontact.contact.held_points import HeldPoints, on_held_facets, projected_facets
 from anisocontact.contact.history import Snapshot
@@ -34,8 +35,8 @@ class FacetMaster(MeshedMaster):
 
     def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
         super().__init__(sides, law, group=group, size=size)
-        self._count = len(sides.points.facet)
-        self.begin()
+        self._held = HeldPoints(len(sides.points.facet))
+        self._beyond = BeyondBorder.of(sides, self._nodes.now, self._hint)
 
     @override
     def initial_state(self) -> State:
@@ -58,6 +59,7 @@ class FacetMaster(MeshedMaster):
             states = {id(state): state for state in histories}.values()
             hints = {id(h): h for h in (self._hint, self._accepted[1], *self._held.hints)}.values()
             named = [*(state["facet"] for state in states), *(hint.facet for hint in hints)]
+            named.append(self._beyond.facet)
             for facets in named:
                 facets[:] = self._gathered.globally(facets)
             self._number_anew(u, named)
@@ -189,16 +191,22 @@ class FacetMaster(MeshedMaster):
         return bool(self._comm.allreduce(int(here)))
 
     @override
-    def begin(self) -> None:
-        self._held = HeldPoints(self._count)
+    def begin(self, state: State) -> State:
+        self._held = HeldPoints(len(state))
+        return self._beyond.begin(state)
 
     @override
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         left = np.zeros((0, 3))
         if now is not None:
             left = np.concatenate(self._comm.allgather(self.sides.lost(state, now)))
-        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        self._accept()
         return left
+
+    def _accept(self) -> None:
+        """Let trials start from where the points are."""
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        self._beyond = BeyondBorder.of(self.sides, self._nodes.now, self._hint)
 
     @override
     def roll_back(self, tried: bool) -> None:
@@ -223,5 +231,5 @@ class FacetMaster(MeshedMaster):
         u = self._gathered.moved(u)
         self._number_anew(u, (kept["state"]["facet"], self._hint.facet))
         self._go_to(self.sides.reference + self._gathered.everywhere(u))
-        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        self._accept()
         return kept

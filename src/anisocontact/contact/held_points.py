@@ -13,14 +13,13 @@ from dataclasses import fields, replace
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.contact.continued_facets import feet_on_continued
 from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
-from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
+from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
 
 #: How far beyond its sides a facet goes on, in its coordinates, which run from 0 to 1.
 BEYOND = 0.1
-#: Corrections of a foot, and the last one that is good enough: facets are nearly flat.
-MOST, ENOUGH = 12, 1e-14
 
 
 class HeldPoints:
@@ -107,7 +106,7 @@ def on_held_facets(
         return hit
     x, facets = sides.points.positions(now)[which], on[which]
     start = np.where((hit.facet[which] == facets)[:, None], hit.xi[which], 0.5)
-    xi, foot, normal = _feet(sides.surface, x, facets, start)
+    xi, foot, normal = feet_on_continued(sides.surface, x, facets, start)
     near = beyond_sides(sides.master.topology, xi) <= BEYOND
     which, facets = which[near], facets[near]
     new = {one.name: getattr(hit, one.name).copy() for one in fields(hit)}
@@ -118,22 +117,3 @@ def on_held_facets(
     new["feature"][which] = FEATURES.index("interior")
     new["entity"][which], new["edge"][which] = -1, 0.0
     return replace(hit, **new)
-
-
-def _feet(
-    surface: FacetSurface, x: Floats, facets: Locals, start: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Coordinates, positions and normals where x - rho is normal to a facet, by Newton's method."""
-    xi = start
-    for _ in range(MOST):
-        jet = surface.jet(facets, xi)
-        rest = x - jet.position
-        curved = np.einsum("nkd,nd->nk", jet.d2, rest)[:, [[0, 1], [1, 2]]]
-        matrix = np.einsum("nid,njd->nij", jet.d1, jet.d1) - curved
-        step = np.linalg.solve(matrix, np.einsum("nid,nd->ni", jet.d1, rest)[..., None])[..., 0]
-        xi = xi + step
-        if np.abs(step).max() <= ENOUGH:
-            break
-    jet = surface.jet(facets, xi)
-    cross = np.cross(jet.d1[:, 0], jet.d1[:, 1])
-    return xi, jet.position, cross / np.linalg.norm(cross, axis=1)[:, None]

@@ -304,9 +304,24 @@ class Master(Protocol):
         """Hold what was let go, after a solution that failed; whether there was any."""
         return False
 
-    def begin(self) -> None:
-        """Take it that trials start from the accepted state."""
-        return
+    def beyond(self, state: State) -> Floats:
+        """How far points of the accepted state are beyond the border, (n,), length; 0 for others.
+
+        Args:
+            state: The accepted state.
+        """
+        return np.zeros(len(state))
+
+    def begin(self, state: State) -> State:
+        """Take it that trials start from the accepted state.
+
+        Args:
+            state: The accepted state.
+
+        Returns:
+            What trials start from: points that no master was below can have a place as well.
+        """
+        return state
 
     def anchor(self, start: State) -> None:
         """Let points that came to lie in the trial count slip from there; collective.

@@ -16,7 +16,7 @@ from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.side_of_master import Seen, SideOfMaster, carried
 from anisocontact.contact.sides import Sides
 from anisocontact.interface import ContactLaw, State
-from anisocontact.surfaces.facets import FacetProjections, FacetSurface
+from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections, FacetSurface
 
 #: Trace of the projection on held directions above which these are all: it is their number.
 ALL = 2.5
@@ -103,6 +103,12 @@ class MeshedMaster(Master):
     @override
     def located(self, state: State) -> Flags:
         return np.asarray(state["facet"] >= 0)
+
+    @override
+    def beyond(self, state: State) -> Floats:
+        hit = self._accepted[1]
+        there = ~self.located(state) & (hit.status == FACET_STATUS.index("off"))
+        return np.where(there, np.abs(hit.gap), 0.0)
 
     @override
     def stiffness(self, diagonal: Floats) -> float:

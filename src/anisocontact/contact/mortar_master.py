@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.contact.along_normals import OPPOSED
+from anisocontact.contact.beyond_border import accepted_opposite, beyond, refer_to_accepted
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
@@ -147,17 +148,17 @@ class MortarMaster(MeshedMaster):
         state["xi"][located] = self._at.planes.xi[located]
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
-        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
-        if self._self_contact is not None:
-            self._self_contact.commit()
-        self._count_as_then(state)
-        self._at = self._placed(self._at.weights)
+        self._accept(state)
         return state
 
-    def _count_as_then(self, state: State) -> None:
-        """Let states refer to the planes of the accepted increment."""
-        count = len(state)
-        state["facet"] = np.where(state["facet"] >= 0, np.arange(count) + count, -1)
+    def _accept(self, state: State) -> None:
+        """Let what is opposite now be that of the accepted increment, and a state refer to it."""
+        self._then = accepted_opposite(self._at, self._hint, state)
+        if self._self_contact is not None:
+            self._self_contact.commit()
+        refer_to_accepted(state, state["facet"] >= 0)
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        self._at = self._placed(self._at.weights)
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
@@ -324,10 +325,13 @@ class MortarMaster(MeshedMaster):
         return way
 
     @override
-    def begin(self) -> None:
+    def begin(self, state: State) -> State:
         if self._replaced is not None:
             self._then, self._replaced = self._then.with_rows(*self._replaced), None
             self._at = self._placed()
+        begun, opposed = state.copy(), self._then.shares.any(axis=1)  # or beyond the border
+        refer_to_accepted(begun, opposed | (state["facet"] >= 0))
+        return begun
 
     @override
     def anchor(self, start: State) -> None:
@@ -347,16 +351,10 @@ class MortarMaster(MeshedMaster):
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         if now is None:
             return np.zeros((0, 3))
-        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
         self._replaced = None
-        if self._self_contact is not None:
-            self._self_contact.commit()
-        self._count_as_then(now.response.state)
-        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
-        self._at = self._placed(self._at.weights)
+        self._accept(now.response.state)
         lost = (state["pressure"] > 0.0) & (now.response.state["facet"] < 0)
-        beyond = self._hint.status == FACET_STATUS.index("off")
-        gone = lost & beyond & (self._at.weights.area <= 0.0)
+        gone = lost & beyond(self._hint) & (self._at.weights.area <= 0.0)
         return np.concatenate(self._comm.allgather(now.points[gone]))
 
     @override
@@ -390,7 +388,7 @@ class MortarMaster(MeshedMaster):
         self._then = self._number_anew(u, [then], [self._hint.facet])[0]
         if self._self_contact is not None:
             self._self_contact.restore(kept["sides"])
-        self._count_as_then(kept["state"])
+        refer_to_accepted(kept["state"], kept["state"]["facet"] >= 0)
         there = self._displaced(u)
         self._go_to(there.now)
         self._nodes = there

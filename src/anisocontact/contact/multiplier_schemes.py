@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from anisocontact.contact.compliant import Compliant
-from anisocontact.contact.multipliers import (
+from anisocontact.contact.augmentable_laws import (
     AugmentedLaw,
-    Multipliers,
     augmentable,
     check,
     simultaneous,
 )
+from anisocontact.contact.compliant import Compliant
+from anisocontact.contact.multipliers import Multipliers
 from anisocontact.contact.nested_uzawa import Graded, GradedSlender, NestedUzawa
 from anisocontact.contact.semismooth import Semismooth, Singly, Slender, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa

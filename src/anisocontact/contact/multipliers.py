@@ -16,18 +16,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
-from anisocontact.base.errors import InputError
 from anisocontact.base.statuses import OPEN, STICK
 from anisocontact.contact.contact_trial import ContactTrial
 from anisocontact.contact.frames import Frames
-from anisocontact.interface import VECTOR_FORMS, ContactLaw, Interface, State
-from anisocontact.interface.augmentation import NEWTON, Augmentation
-from anisocontact.laws import EXPLICIT
+from anisocontact.interface import State
+from anisocontact.interface.augmentation import Augmentation
 from anisocontact.rigid import RigidBody
-
-#: Laws whose penalties can be augmented.
-type AugmentedLaw = Interface | ContactLaw
-
 
 #: Change of the multipliers over the tractions, both as norms over the area, that is good enough.
 SHARE = 1e-5
@@ -49,65 +43,6 @@ ROUNDING = 1e-3
 FAR = 1e8
 #: Least way of a gap that closes, as a share of the gap.
 SMALLEST = 1e-9
-
-
-def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
-    """Find out whether the parts to be augmented are penalties.
-
-    Raises:
-        InputError: The normal law has a time, the history enters in a form without vectors, or the
-            sliding rule does not go with the way to the multipliers.
-    """
-    model = law.normal.named[0]
-    if model != "penalty":
-        raise InputError(
-            f'"{model}" given, an augmented contact needs "penalty": other laws are physical',
-            "normal.model",
-        )
-    if not augmentation.tangential:
-        return
-    if law.tangential.in_python:
-        raise InputError(
-            "a tangential law written in Python is physical: tangential=False needed", "method"
-        )
-    if law.tangential.model != "elastic":
-        raise InputError(
-            f'"{law.tangential.model}" given, an augmented contact needs "elastic"',
-            "adhesion.model",
-        )
-    if not law.tangential.holds_all_ways():
-        raise InputError(
-            "0 along an axis, where nothing is to stick: such adhesion is physical, "
-            "tangential=False needed",
-            "adhesion.stiffness",
-        )
-    if law.evolution not in VECTOR_FORMS:
-        allowed = " or ".join(f'"{name}"' for name in VECTOR_FORMS)
-        raise InputError(
-            f'"{law.evolution}" given, an augmented contact needs {allowed}', "evolution"
-        )
-    if augmentation.multipliers == NEWTON and not simultaneous(augmentation, law):
-        raise InputError(
-            f'"{NEWTON}" given, the sliding rule "{EXPLICIT}" needs "uzawa" or "auto"',
-            "multipliers",
-        )
-
-
-def augmentable(law: AugmentedLaw) -> bool:
-    """Whether a law is one of penalties alone, whose multipliers can follow the displacements."""
-    try:
-        check(Augmentation(multipliers=NEWTON), law)
-    except InputError:
-        return False
-    return True
-
-
-def simultaneous(augmentation: Augmentation, law: AugmentedLaw) -> bool:
-    """Whether a law lets its multipliers be found together with the displacements."""
-    if not augmentation.tangential or law.tangential.in_python:
-        return True
-    # its history is another force than the one that acts: no fixed point of a step
-    return law.tangential.sliding_rule != EXPLICIT
 
 
 class Multipliers:
@@ -178,6 +113,23 @@ class Multipliers:
         np.divide(FADED_RATIO * covered, left, out=faded, where=left > 0.0)
         each = np.where(shared, np.minimum(SHARED_RATIO, faded), faded)
         return np.repeat(each[:, None], 2, axis=1)
+
+    def over_border(self, state: State, beyond: Floats) -> State:
+        """The state that `begin` takes, of points that may slide on to the master.
+
+        One that does comes to lie on its way as one that closes a gap does, see `closeness`, as far
+        away as it was beyond the border: held exactly where it came from, the first sliver
+        of it that is covered would carry all. Where adhesion is physical it is not held.
+
+        Args:
+            state: Of the points, with their places beyond the border.
+            beyond: How far they are beyond it, (n,), length; zero for others.
+        """
+        if not self.tangential:
+            return state
+        start = state.copy()
+        start["gap"] = np.where(beyond > 0.0, beyond + self.limit, state["gap"])
+        return start
 
     def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from.

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from anisocontact.contact.augmentable_laws import AugmentedLaw
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Master
-from anisocontact.contact.multipliers import RATIO, AugmentedLaw, Multipliers
+from anisocontact.contact.multipliers import RATIO, Multipliers
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import State
 

@@ -91,15 +91,16 @@ class Trials:
             state: The state.
             accepted: The points in it.
         """
-        self.start, self._linear = state, None
+        self._linear = None
         self._changes.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
-        self.master.begin()
+        self.start = self.master.begin(state)
         self.shared.begin()
         self._supports = SupportedPoints(len(state))
         self._slivers.begin(accepted.areas)
         if self._own is not None:
-            start = self._own.begin(state, self.master.located(state))
+            begun = self._own.over_border(self.start, self.master.beyond(state))
+            start = self._own.begin(begun, self.master.located(begun))
             self._start_from(self._own.coming_to(self.master.body, start))
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
