@@ -304,13 +304,9 @@ class Master(Protocol):
         """Hold what was let go, after a solution that failed; whether there was any."""
         return False
 
-    def beyond(self, state: State) -> Floats:
-        """How far points of the accepted state are beyond the border, (n,), length; 0 for others.
-
-        Args:
-            state: The accepted state.
-        """
-        return np.zeros(len(state))
+    def beyond(self, state: State) -> Flags:
+        """Points of the accepted state, which is given, that are beyond its border, (n,)."""
+        return np.zeros(len(state), dtype=bool)
 
     def begin(self, state: State) -> State:
         """Take it that trials start from the accepted state.

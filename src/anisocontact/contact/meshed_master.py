@@ -10,13 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
+from anisocontact.contact.beyond_border import beyond
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.side_of_master import Seen, SideOfMaster, carried
 from anisocontact.contact.sides import Sides
 from anisocontact.interface import ContactLaw, State
-from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections, FacetSurface
+from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
 #: Trace of the projection on held directions above which these are all: it is their number.
 ALL = 2.5
@@ -105,10 +106,8 @@ class MeshedMaster(Master):
         return np.asarray(state["facet"] >= 0)
 
     @override
-    def beyond(self, state: State) -> Floats:
-        hit = self._accepted[1]
-        there = ~self.located(state) & (hit.status == FACET_STATUS.index("off"))
-        return np.where(there, np.abs(hit.gap), 0.0)
+    def beyond(self, state: State) -> Flags:
+        return ~self.located(state) & beyond(self._accepted[1])
 
     @override
     def stiffness(self, diagonal: Floats) -> float:

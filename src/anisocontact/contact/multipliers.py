@@ -98,12 +98,15 @@ class Multipliers:
         """Normal penalty and least stiffness of adhesion now, (2,), stress/length."""
         return np.array(self._penalties) * self.factors
 
-    def rigidity(self, shared: Flags, covered: Floats) -> Floats:
+    def rigidity(self, shared: Flags, covered: Floats, beyond: Flags) -> Floats:
         """How many times as stiff as the penalties points are, infinite where they hold exactly.
 
         Args:
             shared: Points that are slaves of other contacts with multipliers as well, (n,).
             covered: Share of the weight of each point that the master covers, above 0, (n,).
+            beyond: Points that were beyond its border, (n,). Along the surface these have penalties
+                alone: held exactly where it came from, the first sliver of a point that is covered
+                would pull it back with all that its neighbours carry.
 
         Returns:
             Along the normal and the surface, (n, 2).
@@ -112,23 +115,20 @@ class Multipliers:
         left = 1.0 - covered / FADES
         np.divide(FADED_RATIO * covered, left, out=faded, where=left > 0.0)
         each = np.where(shared, np.minimum(SHARED_RATIO, faded), faded)
-        return np.repeat(each[:, None], 2, axis=1)
+        return np.stack([each, np.where(beyond, covered, each)], axis=1)
 
-    def over_border(self, state: State, beyond: Floats) -> State:
+    def over_border(self, state: State, beyond: Flags) -> State:
         """The state that `begin` takes, of points that may slide on to the master.
 
-        One that does comes to lie on its way as one that closes a gap does, see `closeness`, as far
-        away as it was beyond the border: held exactly where it came from, the first sliver
-        of it that is covered would carry all. Where adhesion is physical it is not held.
+        One that does has slipped from where it was, which it remembers.
 
         Args:
             state: Of the points, with their places beyond the border.
-            beyond: How far they are beyond it, (n,), length; zero for others.
+            beyond: Points that are beyond it, (n,).
         """
-        if not self.tangential:
-            return state
         start = state.copy()
-        start["gap"] = np.where(beyond > 0.0, beyond + self.limit, state["gap"])
+        if self.tangential:
+            start["status"][beyond] = STICK
         return start
 
     def begin(self, state: State, located: Flags) -> State:

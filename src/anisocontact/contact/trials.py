@@ -65,6 +65,7 @@ class Trials:
         self._linear: Linearised | None = None
         self._changes = PointChanges(comm)
         self._state: State
+        self._beyond: Flags
         self._accepted: Snapshot
         self._now: Snapshot
 
@@ -85,12 +86,7 @@ class Trials:
         return self._own is None or not self._own.tangential
 
     def begin(self, state: State, accepted: Snapshot) -> None:
-        """Let trials start from the committed state.
-
-        Args:
-            state: The state.
-            accepted: The points in it.
-        """
+        """Let trials start from the committed state, of which the points are given as well."""
         self._linear = None
         self._changes.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
@@ -98,8 +94,9 @@ class Trials:
         self.shared.begin()
         self._supports = SupportedPoints(len(state))
         self._slivers.begin(accepted.areas)
+        self._beyond = self.master.beyond(state)
         if self._own is not None:
-            begun = self._own.over_border(self.start, self.master.beyond(state))
+            begun = self._own.over_border(self.start, self._beyond)
             start = self._own.begin(begun, self.master.located(begun))
             self._start_from(self._own.coming_to(self.master.body, start))
         if self._layer is not None:
@@ -378,7 +375,7 @@ class Trials:
         firm = (self._slivers.firm | slight) & self.multipliers.exact
         rigidity = np.full((len(covered), 2), np.inf)
         if own is not None:
-            rigidity = own.rigidity(shared, np.where(firm, 1.0, covered))
+            rigidity = own.rigidity(shared, np.where(firm, 1.0, covered), self._beyond)
         return ContactTrial(
             start=self.start,
             answer=answer,
