@@ -13,6 +13,7 @@ from anisocontact.contact import Contact
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, Problem, Solver, Step
+from anisocontact.solver.system.force_balance import Magnitudes, closed
 from anisocontact.solver.system.prescribed_reached import prescribed_reached
 
 HELD = dict.fromkeys("xyz", 0.0)
@@ -98,3 +99,19 @@ def test_all_that_goes_back_to_zero(off, reached):
     """
     there = np.array([off, 0.0])
     assert prescribed_reached(there, there, MPI.COMM_SELF, 1.0, there, there).prescribed is reached
+
+
+@pytest.mark.parametrize(("away", "small"), [(1e4, True), (1e13, False)])
+def test_rounding_of_bodies_that_are_gone(away, small):
+    """Requirement: forces out of balance are none that bodies far beyond all that leads them round.
+
+    A residual of 1 where Young's modulus makes forces of 1e16 of the displacements, which leaves as
+    much to rounding: a body that is 1 long and led by 2 may be there, but not 1e13 away.
+    """
+    led, there = np.array([2.0]), np.array([away])
+    reached = prescribed_reached(np.zeros(1), led, MPI.COMM_SELF, 1.0, there, np.zeros(1))
+    sizes = Magnitudes(0.0, [1.0], 1e16)
+    found = closed(np.ones(1), sizes, MPI.COMM_SELF, failed=False, correction=None, reached=reached)
+    (field,) = found.of_fields(1.0)
+    assert field.small(1e-8, 0.0) is small
+    assert "more than all is long" in found.explained(1.0) or small

@@ -14,6 +14,9 @@ from anisocontact.base.array_types import Floats
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
 #: Share of the loads that may be left out of balance as round-off.
 LOAD_SHARE = 1e-6
+#: Displacements, over what is prescribed and the length of all bodies, from which on nothing leads
+#: to a state: their rounding makes forces of a strain of 4e-9.
+GONE = 1e6
 #: Hardness from which on it is what rounds: nu = 0.49998 and more.
 HARD = 1e4
 
@@ -54,10 +57,13 @@ class Reached:
     Attributes:
         prescribed: Whether all are where they are prescribed, see `prescribed_reached`.
         far: The largest where it is larger than all bodies together are long, else 0.
+        gone: Whether that is beyond anything that is prescribed, see `GONE`: rounding of such
+            displacements, as large as forces, excuses none that is out of balance.
     """
 
     prescribed: bool = True
     far: float = 0.0
+    gone: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,7 +78,8 @@ class ForceBalance:
         force_scale: Norm of the forces at work: of loads, contacts, supports or supports still to
             be moved, the largest.
         round_off: Residual that floating point leaves, force; never more than a small share of the
-            loads, which a body that flies off would not balance.
+            loads, which a body that flies off would not balance, and none where it has, see
+            `Reached.gone`.
         outside: All forces but those of contact.
         load: Of these, the loads.
         fields: Of a mixed problem the balance of each field, the displacement first.
@@ -202,7 +209,7 @@ def closed(
     if correction is not None:
         residual = residual - correction
     outside, load = forces or (np.zeros(0), np.zeros(0))
-    scale, round_off = sizes.force_scale, sizes.round_off
+    scale, round_off = sizes.force_scale, 0.0 if reached.gone else sizes.round_off
     got, far = reached.prescribed, reached.far
     rounded = (sizes.rounded, far, sizes.hardness)
     return ForceBalance(residual, norm, scale, round_off, outside, load, fields, got, *rounded)

@@ -8,7 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI
-from anisocontact.solver.system.force_balance import ROUND_OFF, Reached
+from anisocontact.solver.system.force_balance import GONE, ROUND_OFF, Reached
 
 #: How far displacements may be from what is prescribed, over the largest of those.
 TOLERANCE = 1e-8
@@ -37,8 +37,9 @@ def prescribed_reached(
     comm.Allreduce(MPI.IN_PLACE, largest, MPI.MAX)
     error, size, *lengths = largest
     reached = bool(error <= max(TOLERANCE * size, ROUND_OFF * max(lengths)))
-    _, moved, extent = lengths
-    return Reached(reached, moved if moved > extent else 0.0)
+    led, moved, extent = lengths
+    gone = bool(moved > GONE * max(size, led, extent))
+    return Reached(reached, moved if moved > extent else 0.0, gone)
 
 
 def _largest(values: Floats) -> float:
