@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from anisocontact.solver.stepping.cut_faces import PAST
 from anisocontact.solver.stepping.report import Accepted
+from anisocontact.solver.stepping.symmetry_watch import CROSSED
 from anisocontact.solver.system.rotations import CURE, STRAINED, WARNED
 
 #: What is said where penalties hold instead of multipliers.
@@ -113,6 +114,9 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield "unstable", UNSTABLE
     for behind in accepted.behind:
         yield f"behind {behind.body} {behind.master}", str(behind)
+    for group, depth in accepted.crossed.items():
+        name = group.partition(".")[0]
+        yield f"crossed {group}", f"body {name!r} {CROSSED.format(group=group, depth=depth)}"
     for name, count in accepted.undetermined.items():
         points = "slave point touches" if count == 1 else "slave points touch"
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"

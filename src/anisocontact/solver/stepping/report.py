@@ -77,6 +77,7 @@ class Accepted:
             several slave nodes, by name of the contact.
         faces: Faces at small strain that have turned so far that their pressure has an arm which is
             not there, by name of the contact; contacts without any are left out.
+        crossed: How far bodies have gone through their planes of symmetry, by facet group, length.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -116,6 +117,7 @@ class Accepted:
     slivers: dict[str, int] = field(default_factory=dict)
     rolled: dict[str, Stride] = field(default_factory=dict)
     faces: dict[str, list[TurnedFace]] = field(default_factory=dict)
+    crossed: dict[str, float] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""
     missed: str = ""

@@ -34,6 +34,7 @@ from anisocontact.solver.stepping.rolling_watch import RollingWatch
 from anisocontact.solver.stepping.run_position import RunPosition, fraction
 from anisocontact.solver.stepping.same_problem import as_array, check_run, described_run, size_of
 from anisocontact.solver.stepping.status_watch import StatusWatch
+from anisocontact.solver.stepping.symmetry_watch import SymmetryWatch
 from anisocontact.solver.stepping.turn_watch import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.stepping.turned_faces import TurnedFaceWatch
 from anisocontact.solver.strategies.choice import choose
@@ -116,6 +117,7 @@ class Solver(Uncopied):
         self._energy = EnergyWatch(problem)
         watches = CutFaceWatch(problem), RollingWatch(problem), TurnedFaceWatch(problem)
         self._cut_faces, self._rolling, self._faces = watches
+        self._symmetry = SymmetryWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
         self._failures = Failures(problem, self.doubtful)
@@ -360,9 +362,8 @@ class Solver(Uncopied):
             self._watch.hold()
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}
-            step = self.steps[self.place.step].name
-            increment = self.place.control.increment
-            self._on_iteration(Progress(step, increment, iteration, residual, counts))
+            where = self.steps[self.place.step].name, self.place.control.increment
+            self._on_iteration(Progress(*where, iteration, residual, counts))
 
     def _accepted(
         self, step: Step, increment: int, done: float, outcome: Outcome, events: EventWatch
@@ -370,8 +371,6 @@ class Solver(Uncopied):
         last = increment == step.increments and done == 1.0
         contacts, energies = self.problem.contacts, self._energy.accepted()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
-        held = {c.name: c.undetermined() for c in contacts}
-        slivers = {c.name: c.slivers() for c in contacts} if outcome.relaxed else {}
         return Accepted(
             step=step.name,
             step_index=self.place.step,
@@ -385,15 +384,16 @@ class Solver(Uncopied):
             reactions=self.problem.reactions(),
             energies=energies,
             ran_off=ran_off,
-            undetermined={name: count for name, count in held.items() if count},
+            undetermined={c.name: n for c in contacts if (n := c.undetermined())},
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
             behind=tuple(self.problem.sides.partly),
             past_cuts=self._cut_faces.lost(),
             relaxed=outcome.relaxed,
-            slivers={name: n for name, n in slivers.items() if n},
+            slivers={c.name: n for c in contacts if outcome.relaxed and (n := c.slivers())},
             rolled=self._rolling.strides(),
             faces=self._faces.faces(),
+            crossed=self._symmetry.crossed(),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",
