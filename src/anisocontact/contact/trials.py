@@ -97,7 +97,7 @@ class Trials:
         self._beyond = self.master.beyond(state)
         if self._own is not None:
             begun = self._own.over_border(self.start, self._beyond)
-            start = self._own.begin(begun, self.master.located(begun))
+            start = self._own.begin(begun, self.master.located(state))
             self._start_from(self._own.coming_to(self.master.body, start))
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
