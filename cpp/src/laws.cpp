@@ -3,6 +3,8 @@
 
 #include "anisocontact/kernel/core_law.hpp"
 
+#include <cmath>
+
 namespace anisocontact {
 
 namespace kernel {
@@ -278,6 +280,13 @@ void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial&
   }
 }
 
+/// Whether forces and slopes are numbers; in the rounding of an ellipse that is thin they may be none.
+bool is_finite(const Reaction& r) noexcept {
+  double sum = r.traction[0] + r.traction[1];
+  for (const Flat& slope : r.d) sum += slope[0] + slope[1];
+  return std::isfinite(sum);
+}
+
 /// Writes what the law answers to `r`, which is new.
 template <bool tangent>
 void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reaction& r) noexcept {
@@ -314,6 +323,11 @@ void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reac
   r.viscous = energies.viscous;
   r.energy = energies.elastic;
   if constexpr (tangent) put_slopes(l, in, t, p, solved, time, whole, r);
+  if (is_finite(r)) return;
+  const Contact status = r.status;
+  r = {};
+  r.status = status;
+  r.failure = Failure::law;
 }
 
 }  // namespace

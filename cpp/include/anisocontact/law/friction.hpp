@@ -9,6 +9,7 @@
 #include <string>
 
 #include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/law/thinness.hpp"
 #include "anisocontact/registry/descriptor.hpp"
 
 namespace anisocontact::law {
@@ -47,6 +48,7 @@ class Orthotropic {
     f.frictionless_ = m[0] == 0.0 && m[1] == 0.0;
     if (f.frictionless_) return f;
     if (std::min(m[0], m[1]) < least_) refuse(m[0], m[1]);
+    refuse_thin("coefficients", m[0], m[1], "; 1e-3 of the other is nearly none along one axis");
     f.lambda_ = {1.0 / (m[0] * m[0]), 1.0 / (m[1] * m[1])};
     return f;
   }
@@ -110,6 +112,8 @@ class HeCurnier {
     if (!(a[0] + least2 > 0.0)) refuse("alpha_2", a[1], -a[0]);
     if (!(a[0] + least3 > 0.0)) refuse("alpha_3", a[2], -a[0]);
     if (!(a[0] + least2 + least3 > 0.0)) refuse("alpha_2 + alpha_3", a[1] + a[2], -a[0]);
+    refuse_thin("alpha: coefficients along the axes", a[0] + least2 + least3,
+                a[0] + std::max(a[1], 0.0) + std::max(a[2], 0.0), "");
     f.alpha_ = {a[0], a[1], a[2]};
     return f;
   }

@@ -157,12 +157,15 @@ S contract(const Tangent2<S, P, Q>& m, const Tangent2<S, opposite(P), opposite(Q
 }
 
 /// Square root of a symmetric positive tensor in mixed placement: (M + sqrt(det M) I)/sqrt(tr M + 2 sqrt(det M))
-/// by the theorem of Cayley and Hamilton.
+/// by the theorem of Cayley and Hamilton. Where det M is lost in the rounding of its two products, it
+/// is what rounding leaves of it: there is a root always, and it is never singular.
 template <class S, Place P>
 Tangent2<S, P, opposite(P)> square_root(const Tangent2<S, P, opposite(P)>& m) {
   using std::sqrt;
-  const S s = sqrt(det(m));
-  return (S(1.0) / sqrt(trace(m) + S(2.0) * s)) * (m + s * unit<S, P>());
+  const S tr = trace(m), d = det(m);
+  const S least = 1e-8 * tr;
+  const S s = value(d) > value(least) * value(least) ? sqrt(d) : least;
+  return (S(1.0) / sqrt(tr + S(2.0) * s)) * (m + s * unit<S, P>());
 }
 
 /// Derivative k of a tensor in dual numbers.

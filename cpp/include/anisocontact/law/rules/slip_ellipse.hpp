@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "anisocontact/law/rules/normality.hpp"
+#include "anisocontact/law/thinness.hpp"
 
 namespace anisocontact::law {
 
@@ -29,6 +30,7 @@ class SlipEllipse : public Normality<SlipEllipse> {
   }
   static SlipEllipse make(const Values& v) {
     const auto& k = v.pair("slip_axes");
+    refuse_thin("slip_axes", k[0], k[1], "");
     const double angle = v.scalar("slip_angle");
     SlipEllipse r;
     r.axis_ = {std::cos(angle), std::sin(angle)};
