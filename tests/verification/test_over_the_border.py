@@ -103,6 +103,27 @@ def test_slip_counts_from_where_a_point_was(mortar: bool, order: int) -> None:
 
 @WAYS
 @ORDERS
+def test_points_that_come_down_as_well(mortar: bool, order: int) -> None:
+    """A pad that comes over the border and down on the plate sticks from where it touches it.
+
+    Source: the way is straight, so that a share of 0.01 in 0.11 of it is in contact, as for points
+    above the plate. Tolerance: rounding.
+    """
+    first, second = _axes()
+    way, above, sunk = np.array([0.3, -0.1, 0.0]), 0.1, 0.01
+    contact, moved = _beside_a_plate((1e3, 1e3), mortar=mortar, order=order)
+    contact.update(moved((0.0, 0.0, above)), 1.0)
+    contact.commit()
+    answer = contact.update(moved(way - (0.0, 0.0, sunk)), 1.0)
+    tangential = answer.traction_t[answer.status > 0]
+    share = sunk / (above + sunk)
+    expected = -share * (ALONG * (way @ first) * first + ACROSS * (way @ second) * second)
+    assert len(tangential)
+    np.testing.assert_allclose(tangential, np.tile(expected, (len(tangential), 1)), atol=1e-10)
+
+
+@WAYS
+@ORDERS
 def test_tangent_of_points_that_come(mortar: bool, order: int) -> None:
     """The tangent where points have come over the border, of which some stick and some slide.
 

@@ -21,11 +21,14 @@ from anisocontact.contact.mortar_answer import MortarState
 from anisocontact.contact.plane_axes import dual
 from anisocontact.contact.sides import Sides
 from anisocontact.interface import State
-from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
+from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections, FacetSurface
 
 #: How far beyond the border a facet goes on, in its coordinates, which run from 0 to 1: farther
 #: out the shape functions of order 2 make much of how the facet bends.
 FARTHEST = 1.0
+#: Least cosine between the normals at the border and where a facet goes on to, and the least area
+#: there over that at the border: beyond, a place is no continuation of the surface.
+STRAIGHT, LEAST = 0.5, 0.1
 
 
 def beyond(hit: FacetProjections) -> Flags:
@@ -40,10 +43,12 @@ class BeyondBorder:
     Attributes:
         facet: Closest facet of each point, (n,); -1 for those that are not beyond the border.
         xi: Coordinates on it, at most `FARTHEST` beyond its sides, (n, 2).
+        gap: How far above it they are, (n,), length; 0 below it.
     """
 
     facet: Locals
     xi: Floats
+    gap: Floats
 
     @classmethod
     def of(cls, sides: Sides, now: Floats, hit: FacetProjections) -> BeyondBorder:
@@ -56,14 +61,19 @@ class BeyondBorder:
         """
         there = beyond(hit)
         facet, xi = np.where(there, hit.facet, np.int32(-1)), np.nan_to_num(hit.xi)
+        gap = np.zeros(len(facet))
         if (which := np.flatnonzero(there)).size:
             x, start = sides.points.positions(now)[which], xi[which]
-            far = feet_on_continued(sides.surface, x, facet[which], start)[0]
+            far, foot, normal = feet_on_continued(sides.surface, x, facet[which], start)
             outside = beyond_sides(sides.master.topology, far)
             share = np.minimum(FARTHEST / np.maximum(outside, FARTHEST), 1.0)
-            # a facet that is folded flat has no place beside it
-            xi[which] = start + np.nan_to_num(share[:, None] * (far - start))
-        return cls(facet, xi)
+            far = start + share[:, None] * (far - start)
+            there = goes_on(sides.surface, facet[which], start, far)
+            xi[which] = np.where(there[:, None], far, start)
+            above = np.where(there, np.einsum("nd,nd->n", x - foot, normal), 0.0)
+            # no farther than the border is, wherever a facet that is bent goes on to
+            gap[which] = np.clip(above, 0.0, np.abs(hit.gap[which]))
+        return cls(facet, xi, gap)
 
     def begin(self, state: State) -> State:
         """The accepted state with the places of points that no facet was below."""
@@ -71,8 +81,21 @@ class BeyondBorder:
         if not which.any():
             return state
         begun = state.copy()
-        begun["facet"][which], begun["xi"][which] = self.facet[which], self.xi[which]
+        for name in ("facet", "xi", "gap"):
+            begun[name][which] = getattr(self, name)[which]
+        begun["origin"][which] = self.xi[which]
         return begun
+
+
+def goes_on(surface: FacetSurface, facet: Locals, start: Floats, far: Floats) -> Flags:
+    """Whether facets go on from their border to places without turning round or folding, (n,)."""
+    jets = [surface.jet(facet, xi) for xi in (start, far)]
+    border, there = (np.cross(jet.d1[:, 0], jet.d1[:, 1]) for jet in jets)
+    size = np.linalg.norm(border, axis=1)
+    along = np.einsum("nd,nd->n", border, there)
+    straight = along > STRAIGHT * size * np.linalg.norm(there, axis=1)
+    # not a number where a facet that is folded flat has no place beside it
+    return np.asarray(straight & (np.linalg.norm(there, axis=1) > LEAST * size))
 
 
 def accepted_opposite(at: MortarState, hit: FacetProjections, state: State) -> Opposite:
@@ -84,7 +107,8 @@ def accepted_opposite(at: MortarState, hit: FacetProjections, state: State) -> O
     Args:
         at: The slave nodes where they are.
         hit: Their closest points.
-        state: The state, in which nodes beyond the border get coordinates in their plane.
+        state: The state, in which nodes beyond the border get coordinates in their plane, and how
+            far above it they are.
     """
     planes, now = at.planes, at.opposite[0].with_axes(at.planes.now)
     opposed = (now.facet >= 0) & (planes.now.cosine > OPPOSED)
@@ -92,7 +116,10 @@ def accepted_opposite(at: MortarState, hit: FacetProjections, state: State) -> O
     rows, border = np.flatnonzero(there), replace(now, masters=now.nodes, shares=now.shape)
     away = planes.slave[rows] - border.mean(at.now)[rows]
     away -= along(planes.held[rows], away)
+    above = np.einsum("ni,ni->n", away, planes.normal[rows])
+    state["gap"][rows] = np.maximum(above, 0.0)
     state["xi"][rows] = np.einsum("nai,ni->na", dual(planes.now.axes[rows]), away)
+    state["origin"][rows] = state["xi"][rows]
     now = replace(now, shares=np.where(state["facet"][:, None] < 0, 0.0, now.shares))
     return now.with_rows(there, border).in_order()
 

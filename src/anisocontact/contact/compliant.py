@@ -40,7 +40,7 @@ class Compliant(Semismooth):
         self.level, self._proportion = float(normal), float(tangential / normal)
 
     @override
-    def rigidity(self, shared: Flags, covered: Floats, beyond: Flags) -> Floats:
+    def rigidity(self, shared: Flags, covered: Floats) -> Floats:
         return np.asarray(covered[:, None] / np.array(self.factors))
 
     @override

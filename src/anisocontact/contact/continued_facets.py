@@ -32,7 +32,8 @@ def feet_on_continued(
         rest = x - jet.position
         curved = np.einsum("nkd,nd->nk", jet.d2, rest)[:, [[0, 1], [1, 2]]]
         matrix = np.einsum("nid,njd->nij", jet.d1, jet.d1) - curved
-        matrix[np.linalg.det(matrix) == 0.0] = np.nan
+        with np.errstate(invalid="ignore"):  # of those without a normal from before
+            matrix[np.linalg.det(matrix) == 0.0] = np.nan
         step = np.linalg.solve(matrix, np.einsum("nid,nd->ni", jet.d1, rest)[..., None])[..., 0]
         xi = xi + step
         if not np.nanmax(np.abs(step), initial=0.0) > ENOUGH:

@@ -126,6 +126,12 @@ class MultiplierSchemes:
         self.taken = self._schemes.get(USUAL)
 
     @property
+    def first(self) -> bool:
+        """Whether the scheme is none that is tried where the usual one has failed."""
+        others = [one for name, one in self._schemes.items() if name != USUAL]
+        return all(self.taken is not one for one in others)
+
+    @property
     def penalised(self) -> bool:
         """Whether penalties alone hold where multipliers could follow."""
         return self.taken is None and augmentable(self._law)

@@ -98,15 +98,12 @@ class Multipliers:
         """Normal penalty and least stiffness of adhesion now, (2,), stress/length."""
         return np.array(self._penalties) * self.factors
 
-    def rigidity(self, shared: Flags, covered: Floats, beyond: Flags) -> Floats:
+    def rigidity(self, shared: Flags, covered: Floats) -> Floats:
         """How many times as stiff as the penalties points are, infinite where they hold exactly.
 
         Args:
             shared: Points that are slaves of other contacts with multipliers as well, (n,).
             covered: Share of the weight of each point that the master covers, above 0, (n,).
-            beyond: Points that were beyond its border, (n,). Along the surface these have penalties
-                alone: held exactly where it came from, the first sliver of a point that is covered
-                would pull it back with all that its neighbours carry.
 
         Returns:
             Along the normal and the surface, (n, 2).
@@ -115,20 +112,34 @@ class Multipliers:
         left = 1.0 - covered / FADES
         np.divide(FADED_RATIO * covered, left, out=faded, where=left > 0.0)
         each = np.where(shared, np.minimum(SHARED_RATIO, faded), faded)
-        return np.stack([each, np.where(beyond, covered, each)], axis=1)
+        return np.repeat(each[:, None], 2, axis=1)
 
-    def over_border(self, state: State, beyond: Flags) -> State:
-        """The state that `begin` takes, of points that may slide on to the master.
+    def held_beyond(self, state: State, beyond: Flags) -> Flags:
+        """Points beyond a border that remember where they were if they slide over it, (n,).
 
-        One that does has slipped from where it was, which it remembers.
+        One that also comes down on it slips from there on, as others whose gap closes, see `begin`.
+        Where adhesion is physical, all of the way counts. Along the surface penalties alone hold
+        them: held exactly where it came from, the first sliver of a point that is covered would
+        pull it back with all that its neighbours carry.
 
         Args:
-            state: Of the points, with their places beyond the border.
+            state: What trials start from.
             beyond: Points that are beyond it, (n,).
+        """
+        return beyond & (state["gap"] <= self.limit) if self.tangential else beyond
+
+    def over_border(self, state: State, beyond: Flags) -> State:
+        """The state that `begin` takes, with the slip of points that may slide on to the master.
+
+        Args:
+            state: What trials start from.
+            beyond: As of `held_beyond`.
         """
         start = state.copy()
         if self.tangential:
             start["status"][beyond] = STICK
+        else:
+            start["gap"][beyond] = 0.0
         return start
 
     def begin(self, state: State, located: Flags) -> State:

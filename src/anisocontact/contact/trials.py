@@ -65,7 +65,6 @@ class Trials:
         self._linear: Linearised | None = None
         self._changes = PointChanges(comm)
         self._state: State
-        self._beyond: Flags
         self._accepted: Snapshot
         self._now: Snapshot
 
@@ -90,14 +89,16 @@ class Trials:
         self._linear = None
         self._changes.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
-        self.start = self.master.begin(state)
+        begun, counts = self.master.begin(state), self.multipliers.first
+        self.start = begun if counts else state
+        self._beyond = self.master.beyond(state) & counts
         self.shared.begin()
         self._supports = SupportedPoints(len(state))
         self._slivers.begin(accepted.areas)
-        self._beyond = self.master.beyond(state)
         if self._own is not None:
-            begun = self._own.over_border(self.start, self._beyond)
-            start = self._own.begin(begun, self.master.located(state))
+            self._beyond = self._own.held_beyond(self.start, self._beyond)
+            there = self.master.located(self.start) & ~self._beyond
+            start = self._own.begin(self._own.over_border(self.start, self._beyond), there)
             self._start_from(self._own.coming_to(self.master.body, start))
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
@@ -375,7 +376,9 @@ class Trials:
         firm = (self._slivers.firm | slight) & self.multipliers.exact
         rigidity = np.full((len(covered), 2), np.inf)
         if own is not None:
-            rigidity = own.rigidity(shared, np.where(firm, 1.0, covered), self._beyond)
+            rigidity = own.rigidity(shared, np.where(firm, 1.0, covered))
+            come = self._beyond & own.exact  # by penalties alone, see `Multipliers.held_beyond`
+            rigidity[come, 1] = covered[come]
         return ContactTrial(
             start=self.start,
             answer=answer,
