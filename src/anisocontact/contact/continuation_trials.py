@@ -15,7 +15,9 @@ class ContinuationTrials(Trials):
             compliance: Of the layer, length/stress.
             dt: Time increment.
         """
-        first = self._laws.lay(compliance, dt, self._own, self.start)
+        start = self.start.copy()
+        start["facet"][self.master.beyond(self._state)] = -1  # nothing shifts where no master is
+        first = self._laws.lay(compliance, dt, self._own, start)
         self._stiffen()
         assert self._layer is not None
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))

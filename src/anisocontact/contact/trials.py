@@ -89,7 +89,7 @@ class Trials:
         self._linear = None
         self._changes.begin()
         self._state, self._now, self._accepted = state, accepted, accepted
-        begun, counts = self.master.begin(state), self.multipliers.first
+        begun, counts = self.master.begin(state), self.multipliers.first and self._layer is None
         self.start = begun if counts else state
         self._beyond = self.master.beyond(state) & counts
         self.shared.begin()
