@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.contact.beyond_border import goes_on
+from anisocontact.contact.beyond_border import goes_on, places_beyond
 from anisocontact.contact.continued_facets import feet_on_continued
 from anisocontact.surfaces import FacetSurface
 
@@ -20,6 +20,25 @@ def test_a_facet_goes_on_until_its_sides_meet(to: float, there: bool) -> None:
     facet = np.zeros(1, dtype=np.int32)
     start, far = np.array([[0.5, 1.0]]), np.array([[0.5, to]])
     assert goes_on(surface, facet, start, far).tolist() == [there]
+
+
+@pytest.mark.parametrize(("turn", "there"), [(1.2, True), (3.5, False)])
+def test_the_foot_on_the_other_side_of_an_arc_is_none(turn: float, there: bool) -> None:
+    """An arc of 40 degrees and points above where it goes on, by a fifth of it and by far more.
+
+    Newton's method comes to a place inside the arc from far out: slip from there would have the
+    wrong sense, and begins at the border.
+    """
+    angle, radius = np.radians(40.0), 1.05
+    at = [(0, 0), (1, 0), (0, 1), (1, 1), (0.5, 0), (0, 0.5), (1, 0.5), (0.5, 1), (0.5, 0.5)]
+    nodes = np.array([(np.sin(t * angle), y, np.cos(t * angle)) for t, y in at])
+    surface = FacetSurface(nodes, [list(range(9))], "quad9")
+    x = np.array([[radius * np.sin(turn * angle), 0.5, radius * np.cos(turn * angle)]])
+    start, away = np.array([[1.0, 0.5]]), np.linalg.norm(x - nodes[6], axis=1)
+    facet = np.zeros(1, dtype=np.int32)
+    xi, gap = places_beyond(surface, "quad9", x, facet, start, away)
+    assert xi[0, 0] > 1.0 if there else np.array_equal(xi, start)
+    assert gap[0] == pytest.approx(0.05 if there else 0.0, abs=0.02)  # a parabola
 
 
 def test_a_facet_without_a_normal_has_no_foot() -> None:

@@ -64,15 +64,9 @@ class BeyondBorder:
         gap = np.zeros(len(facet))
         if (which := np.flatnonzero(there)).size:
             x, start = sides.points.positions(now)[which], xi[which]
-            far, foot, normal = feet_on_continued(sides.surface, x, facet[which], start)
-            outside = beyond_sides(sides.master.topology, far)
-            share = np.minimum(FARTHEST / np.maximum(outside, FARTHEST), 1.0)
-            far = start + share[:, None] * (far - start)
-            there = goes_on(sides.surface, facet[which], start, far)
-            xi[which] = np.where(there[:, None], far, start)
-            above = np.where(there, np.einsum("nd,nd->n", x - foot, normal), 0.0)
-            # no farther than the border is, wherever a facet that is bent goes on to
-            gap[which] = np.clip(above, 0.0, np.abs(hit.gap[which]))
+            topology, away = sides.master.topology, np.abs(hit.gap[which])
+            found = places_beyond(sides.surface, topology, x, facet[which], start, away)
+            xi[which], gap[which] = found
         return cls(facet, xi, gap)
 
     def begin(self, state: State) -> State:
@@ -85,6 +79,33 @@ class BeyondBorder:
             begun[name][which] = getattr(self, name)[which]
         begun["origin"][which] = self.xi[which]
         return begun
+
+
+def places_beyond(
+    surface: FacetSurface, topology: str, x: Floats, facet: Locals, start: Floats, away: Floats
+) -> tuple[Floats, Floats]:
+    """Where points are on facets that go on beyond their border, and how far above these.
+
+    Args:
+        surface: The facets, where they are now.
+        topology: Of these.
+        x: The points, (n, 3), length.
+        facet: Closest facet of each, (n,).
+        start: Closest places on their border, (n, 2).
+        away: Distances from there, (n,), length.
+
+    Returns:
+        Coordinates, (n, 2), at most `FARTHEST` beyond the sides, and on the border where a facet
+        does not go on to the foot; gaps (n,), length, 0 below.
+    """
+    far, foot, normal = feet_on_continued(surface, x, facet, start)
+    outside = beyond_sides(topology, far)
+    share = np.minimum(FARTHEST / np.maximum(outside, FARTHEST), 1.0)
+    far = start + share[:, None] * (far - start)
+    # a facet that bends has a foot on its other side as well, which is farther than the border
+    there = goes_on(surface, facet, start, far) & (np.linalg.norm(x - foot, axis=1) <= away)
+    above = np.where(there, np.einsum("nd,nd->n", x - foot, normal), 0.0)
+    return np.where(there[:, None], far, start), np.clip(above, 0.0, None)
 
 
 def goes_on(surface: FacetSurface, facet: Locals, start: Floats, far: Floats) -> Flags:
