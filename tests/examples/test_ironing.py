@@ -33,9 +33,10 @@ def steady_slip() -> np.ndarray:
 def test_newton_converges_quadratically(tmp_path: Path) -> None:
     """On the press and the first increments of the slide, with exact corrections (`direct`).
 
-    The residuals r, relative to the forces at work, of the last two corrections of every increment
-    fulfil r_n <= 10 r_(n-1)^2, up to round-off of 2e-11; measured is 4 r_(n-1)^2. With linear
-    convergence the last of them, from 1e-6 or so, would be far above 1e-11.
+    The residuals r, relative to the forces at work, of the last corrections of every increment
+    fulfil r_n <= 10 r_(n-1)^2 from r_(n-1) < 1e-3 on, up to round-off of 2e-11; measured is 6 r^2.
+    Before, nodes of the die that come over the border of the slab still change their status. With
+    linear convergence the last of them, from 1e-6 or so, would be far above 1e-11.
     """
     path = tmp_path / "case.toml"
     path.write_text(CASE.read_text() + '\n[solver]\nstrategy = "direct"\n')
@@ -45,7 +46,9 @@ def test_newton_converges_quadratically(tmp_path: Path) -> None:
     residuals = np.array([a.residuals[-3:] for a in built.solver.run()])
     assert residuals.shape == (11, 3)
     assert residuals[:, -1].max() < 1e-8
-    assert np.all(residuals[:, 1:] <= 10.0 * residuals[:, :-1] ** 2 + 2e-11)
+    before, after = residuals[:, :-1], residuals[:, 1:]
+    assert (before < 1e-3).any(axis=1).all()
+    assert np.all((after <= 10.0 * before**2 + 2e-11) | (before >= 1e-3))
 
 
 @pytest.mark.slow

@@ -29,6 +29,8 @@ FARTHEST = 1.0
 #: Least cosine between the normals at the border and where a facet goes on to, and the least area
 #: there over that at the border: beyond, a place is no continuation of the surface.
 STRAIGHT, LEAST = 0.5, 0.1
+#: Share of a node in a place on the border that is none.
+ROUNDING = 1e-12
 
 
 def beyond(hit: FacetProjections) -> Flags:
@@ -134,7 +136,9 @@ def accepted_opposite(at: MortarState, hit: FacetProjections, state: State) -> O
     planes, now = at.planes, at.opposite[0].with_axes(at.planes.now)
     opposed = (now.facet >= 0) & (planes.now.cosine > OPPOSED)
     there = (state["facet"] < 0) & beyond(hit) & opposed
-    rows, border = np.flatnonzero(there), replace(now, masters=now.nodes, shares=now.shape)
+    # which nodes have a share is no matter of rounding: another number of processes has the same
+    shares = np.where(np.abs(now.shape) > ROUNDING, now.shape, 0.0)
+    rows, border = np.flatnonzero(there), replace(now, masters=now.nodes, shares=shares)
     away = planes.slave[rows] - border.mean(at.now)[rows]
     away -= along(planes.held[rows], away)
     above = np.einsum("ni,ni->n", away, planes.normal[rows])
