@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
 from anisocontact.results import Results
+from anisocontact.solver import Progress
 
 CASE = Path(__file__).parents[2] / "examples" / "ironing" / "case.toml"
 DIE_WIDTH = 4.0
@@ -33,22 +35,34 @@ def steady_slip() -> np.ndarray:
 def test_newton_converges_quadratically(tmp_path: Path) -> None:
     """On the press and the first increments of the slide, with exact corrections (`direct`).
 
-    The residuals r, relative to the forces at work, of the last corrections of every increment
-    fulfil r_n <= 10 r_(n-1)^2 from r_(n-1) < 1e-3 on, up to round-off of 2e-11; measured is 6 r^2.
-    Before, nodes of the die that come over the border of the slab still change their status. With
-    linear convergence the last of them, from 1e-6 or so, would be far above 1e-11.
+    The residuals r, relative to the forces at work, fulfil r_n <= 10 r_(n-1)^2, up to round-off of
+    2e-11, after the last two corrections of every increment; measured is 8 r_(n-1)^2. One of them
+    all may not, in which a point that presses changes its status or comes to another facet, where
+    forces have a kink. With linear convergence the last residual, from 1e-6 or so, would be far
+    above 1e-11.
     """
     path = tmp_path / "case.toml"
     path.write_text(CASE.read_text() + '\n[solver]\nstrategy = "direct"\n')
     built = build(load(path))
     slide = replace(built.steps[1], increments=6, displacement={"die.inner": {"x": 2.4}})
     built.solver.steps[1] = slide
-    residuals = np.array([a.residuals[-3:] for a in built.solver.run()])
-    assert residuals.shape == (11, 3)
-    assert residuals[:, -1].max() < 1e-8
-    before, after = residuals[:, :-1], residuals[:, 1:]
-    assert (before < 1e-3).any(axis=1).all()
-    assert np.all((after <= 10.0 * before**2 + 2e-11) | (before >= 1e-3))
+    (contact,) = built.problem.contacts
+    seen: list[tuple[np.ndarray, ...]] = []
+
+    def look(progress: Progress) -> None:
+        status = contact.trial.status.copy()
+        seen.append((status, np.where(status > 0, contact.projected_facets(), -1)))
+
+    slower = 0
+    for accepted in built.solver.run(on_iteration=look):
+        r, states = accepted.residuals[-3:], seen[-3:]
+        assert len(r) == 3
+        assert r[-1] < 1e-8
+        for i, (before, after) in enumerate(pairwise(states)):
+            if r[i + 1] > 10.0 * r[i] ** 2 + 2e-11:
+                assert not all(np.array_equal(*pair) for pair in zip(before, after, strict=True))
+                slower += 1
+    assert slower <= 1
 
 
 @pytest.mark.slow

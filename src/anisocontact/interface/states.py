@@ -19,7 +19,8 @@ FAILURE = (
     "",
     "no closest point on the surface",
     "the direction field has no direction there: singular, along the normal or out of its table",
-    "the sliding rule found no force",
+    "the sliding rule found no force, or its tangent is not finite; stiffnesses may be too far "
+    "apart",
 )
 
 
