@@ -20,6 +20,7 @@ from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step, Tie
+from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
 
 E, NU = 100.0, 0.3
 ROUNDING = 1e-12
@@ -257,3 +258,38 @@ def test_a_joint_under_physical_adhesion(swapped: bool) -> None:
     friction from the next increment on, see the page on the interface model.
     """
     _check_joint(1, PHYSICAL, swapped)
+
+
+def test_friction_that_is_left_out_is_told() -> None:
+    """Increments in which a pad that comes over a corner lacks friction have a warning, no other.
+
+    Requirement: where iterations with the slip of points that come over the border fail, others
+    leave their friction out, and the user hears how much of the normal force that concerns.
+    Source: friction over the normal force does not change in steady sliding; where points with a
+    share s of the normal force have none it is (1 - s) of that. Tolerance: 0.04, twice the scatter
+    of 0.42 to 0.44 before any is left out.
+    """
+    law = _law((0.4, 0.2))
+    pad = BoxSpec((-0.8, -0.8, 0.0), (1.0, 1.0, 0.4), (3, 3, 1), order=2)
+    plate = BoxSpec((0.0, 0.0, -0.5), (2.0, 2.0, 0.5), (5, 5, 1), order=2)
+    model = build_box({"pad": pad, "plate": plate})
+    contact = Contact(model, "pad.bottom", "plate.top", law, augmentation=Augmentation())
+    material = make_material("neo-hookean", E=200.0, nu=NU)
+    problem = Problem(model, {"pad": material, "plate": material}, [contact])
+    held = {"plate.bottom": dict.fromkeys("xyz", 0.0)}
+    press = held | {"pad.top": {"x": 0.0, "y": 0.0, "z": -0.02}}
+    drag = held | {"pad.top": {"x": 0.5, "y": 0.4, "z": -0.02}}
+    found = []
+    for accepted in Solver(problem, [Step("press", 2, press), Step("drag", 6, drag)]).run():
+        force = contact.resultant()[0]
+        ratio = float(np.linalg.norm(force[:2]) / abs(force[2]))
+        told = accepted.without_slip.get(contact.name)
+        found.append((ratio, 0.0 if told is None else told.share))
+        if told is not None:
+            (line,) = (one for one in IncrementWarnings().of(accepted) if "border" in one)
+            assert f"{told.count} slave point" in line and f"{told.share:.2g}" in line
+            break
+    ratios, shares = np.array(found[2:]).T
+    assert (shares > 0.0).any() and (shares == 0.0).any()
+    steady = float(ratios[shares == 0.0].mean())
+    assert ratios == pytest.approx((1.0 - shares) * steady, abs=0.04)

@@ -73,6 +73,8 @@ class ContactPair:
         accepted: The points in the accepted increment.
         answer: What the laws answered last: forces of the trial and their derivative.
         ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
+        without_slip: Those that came on to it in that increment as if from nowhere, (n,), see
+            `ContinuationTrials.without_slip`.
         body_stiffness: Traction per displacement of a single node of the bodies behind it, mean
             over the surface, stress/length; 0 until they are known.
         master_yields: How many times as far as the slave the master gives way, see `Master.yields`.
@@ -89,10 +91,9 @@ class ContactPair:
         parts: PairParts,
         options: ContactOptions,
     ) -> None:
-        points, master = parts.points, parts.master
+        self.slave_points, self.master = points, master = parts.points, parts.master
         self.unknowns, self.space = unknowns, unknowns.nodes
         self.slave, self.name = slave, name
-        self.slave_points, self.master = points, master
         nodes = self.space.dofmap.index_map
         self._count = nodes.size_local + nodes.num_ghosts
         self._comm, self._area_given = unknowns.comm, options.current_area is not None
@@ -100,6 +101,7 @@ class ContactPair:
         self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
         self._committed = adjusted(master.initial_state(), options.adjust)
+        self.without_slip: Flags = np.zeros(len(self._committed), dtype=bool)
         self.answer: Answer = master.answer(self._committed, 1.0)
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
@@ -107,9 +109,8 @@ class ContactPair:
         self.trials = ContinuationTrials(points, master, parts.law, self._committed, self._comm)
         self._energies = ContactEnergies(self.trials, len(self._committed), self._comm)
         check_start(self, points.size)
-        self._augmentation = augmentation = options.augmentation
         self._fixed: Floats | None = None
-        if augmentation is not None:
+        if (augmentation := options.augmentation) is not None:
             self.trials.multipliers.augment(augmentation, points.size)
         self._begin()
 
@@ -181,8 +182,8 @@ class ContactPair:
     def given_stiffnesses(self) -> dict[str, float]:
         """Those that hold, which multipliers do not choose, by name, stress/length."""
         interface = self.interface
-        found = {} if self._augmentation else {"normal.penalty": interface.penalties()[0]}
-        if not (self._augmentation and self._augmentation.tangential):
+        found = {} if self.trials.augmented else {"normal.penalty": interface.penalties()[0]}
+        if self.trials.does_work:
             found["adhesion.stiffness"] = interface.tangential.stiffest()
         return found
 
@@ -209,8 +210,7 @@ class ContactPair:
 
         They touch, and supports hold them and what they meet along the normal.
         """
-        met = self.meeting()
-        own = self.trials.immovable & met if self.trials.augmented else met[:0]
+        own = self.trials.immovable & self.meeting() & self.trials.augmented
         return int(self._comm.allreduce(int(np.count_nonzero(own))))
 
     def update(self, u: Floats, dt: float) -> Response:
@@ -290,6 +290,7 @@ class ContactPair:
 
     def commit(self) -> None:
         """Make the trial the history."""
+        self.without_slip = self.trials.without_slip()
         self.ran_off = self.master.commit(self.accepted, self._committed, self._trial)
         if self._trial is not None:
             self._gained = self._trial.response.traction - self.last.traction
@@ -394,7 +395,6 @@ class ContactPair:
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._gained, self._trial = np.array(kept["gained"]), None
         self._energies.dissipated = np.array(kept["dissipated"])
-        self.trials.multipliers.level = max(
-            self._comm.allgather(float(kept["level"].max(initial=0.0)))
-        )
+        level = float(kept["level"].max(initial=0.0))
+        self.trials.multipliers.level = max(self._comm.allgather(level))
         self._begin()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from anisocontact.base.array_types import Flags
 from anisocontact.contact.trials import Trials
 
 
@@ -21,6 +22,13 @@ class ContinuationTrials(Trials):
         self._stiffen()
         assert self._layer is not None
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
+
+    def without_slip(self) -> Flags:
+        """Points beyond the border of the master that slide on to it as if from nowhere, (n,).
+
+        In the usual trials there are none, see `beyond_border`.
+        """
+        return self.master.beyond(self._state) & ~self.master.located(self.start)
 
     @property
     def penalised(self) -> bool:

@@ -126,6 +126,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"fed {name}", f"body {name!r}: {FED.format(share=share)}"
     for name, stride in accepted.rolled.items():
         yield f"rolled {name}", f"contact {name!r}: {stride}"
+    for name, came in accepted.without_slip.items():
+        yield f"without slip {name}", f"contact {name!r}: {came}"
     for name, faces in accepted.faces.items():
         yield from ((f"face {name} {one.body}", f"contact {name!r}: {one}") for one in faces)
     for name, count in accepted.slivers.items():

@@ -11,6 +11,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import by_place
 from anisocontact.base.shown import shown
 from anisocontact.interface.failed_point import FailedPoint
+from anisocontact.solver.stepping.border_watch import WithoutSlip
 from anisocontact.solver.stepping.rolling_watch import Stride
 from anisocontact.solver.stepping.turned_faces import TurnedFace
 from anisocontact.solver.system.culprit import Culprit
@@ -77,6 +78,8 @@ class Accepted:
             several slave nodes, by name of the contact.
         faces: Faces at small strain that have turned so far that their pressure has an arm which is
             not there, by name of the contact; contacts without any are left out.
+        without_slip: Slave points that came over the border of their master in it and carry no
+            friction, by name of the contact; contacts without any are left out.
         crossed: How far bodies have gone through their planes of symmetry, by facet group, length.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
@@ -117,6 +120,7 @@ class Accepted:
     slivers: dict[str, int] = field(default_factory=dict)
     rolled: dict[str, Stride] = field(default_factory=dict)
     faces: dict[str, list[TurnedFace]] = field(default_factory=dict)
+    without_slip: dict[str, WithoutSlip] = field(default_factory=dict)
     crossed: dict[str, float] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""

@@ -15,6 +15,7 @@ from anisocontact.contact import warn_of
 from anisocontact.contact.multiplier_schemes import SLENDER
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.bending import bend, told_if_unstable
+from anisocontact.solver.stepping.border_watch import without_slip
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
@@ -308,8 +309,7 @@ class Solver(Uncopied):
         if any(one.told or one.further for one in found):
             return events.overload()
         # pressures may move until then, and so may the limit: it is come closer to first
-        far = bool(found) and control.part > max(least_halved(found), self.limits.smallest)
-        if far:
+        if far := bool(found) and control.part > max(least_halved(found), self.limits.smallest):
             control.bound(0.5 * control.part)
         return far
 
@@ -323,8 +323,7 @@ class Solver(Uncopied):
         first, ratio = self._predictor.state(last, self.place.before, control)
         self._turns.permitted = control.cuttable
         release_unreferenced(self.problem.comm)
-        # where friction cannot hold the loads no smaller sub-increment leads to the end of the
-        # increment
+        # where friction cannot hold the loads no smaller sub-increment leads to their end
         overloads = past_holding(self.problem, end, self.place.reached(step), control.cuts)
         with self._options:
             return attempts.solve(first, last, ratio, control, overloads)
@@ -393,6 +392,7 @@ class Solver(Uncopied):
             slivers={c.name: n for c in contacts if outcome.relaxed and (n := c.slivers())},
             rolled=self._rolling.strides(),
             faces=self._faces.faces(),
+            without_slip=without_slip(self.problem),
             crossed=self._symmetry.crossed(),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
