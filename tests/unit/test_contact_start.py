@@ -19,6 +19,8 @@ from anisocontact.mesh import Body, BoxSpec, GmshFile, Model, build_box, build_m
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
+dolfinx_mesh = pytest.importorskip("dolfinx.mesh")
+
 #: At slave nodes.
 POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
@@ -109,9 +111,27 @@ def test_surface_that_points_the_wrong_way_is_named(mortar: bool, place: str) ->
 def test_group_on_the_wrong_side_is_named() -> None:
     """The top of the block is named where its bottom meets the base."""
     model = _blocks(0.0)
+    said = r"'(block|base).top' faces the same way .*; name the facets on the other side$"
     for made in (POINTS, MORTAR):
-        with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
+        with pytest.raises(InputError, match=said):
             made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
+
+
+def test_halves_of_one_face_are_told_of_self_contact() -> None:
+    """The inside of a ring that is to collapse on to itself, given as slave and master.
+
+    Requirement: both halves bend away from each other where they join; what is meant is said.
+    """
+    ring = make_shape("ring", inner=1.0, outer=1.2, length=1.0, cells=(1, 24, 2))
+    whole = build_mesh([Body("ring", ring)])
+    inner = whole.facets("ring.inner")
+    x = dolfinx_mesh.compute_midpoints(whole.mesh, 2, inner)[:, 0]
+    halves = {"ring.left": inner[x < 0.0], "ring.right": inner[x > 0.0], "ring.both": inner}
+    model = Model(whole.mesh, {"ring": whole.cells("ring")}, halves)
+    said = r"'ring.left' faces the same way .*, or both as one group with self_contact = true where"
+    with pytest.raises(InputError, match=said):
+        Contact(model, "ring.left", "ring.right", law=ContactLaw(*_laws()))
+    Contact(model, "ring.both", "ring.both", law=ContactLaw(*_laws()), self_contact=True)
 
 
 @pytest.mark.parametrize("height", [0.8, 0.05])

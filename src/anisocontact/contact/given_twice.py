@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI
 from anisocontact.contact.contact import Contact
 from anisocontact.surfaces import Surface
 
@@ -26,8 +28,11 @@ def check_given_once(contacts: Sequence[Contact], field: str) -> None:
     Raises:
         InputError: Names the contacts and how many facets they share.
     """
-    for first, second in combinations(contacts, 2):
-        count, swapped = shared(first, second), swapped_facets(first, second)
+    common = _CommonFacets(contacts)
+    met = _same_master(contacts, common)
+    for pair in combinations(range(len(contacts)), 2):
+        first, second = (contacts[number] for number in pair)
+        count, swapped = met.get(pair, 0), _swapped(first, second, common)
         if count or swapped:
             what = (
                 f"{count} of its facets meet the same master in contact {first.name!r}"
@@ -44,39 +49,95 @@ def shared(one: Contact, two: Contact) -> int:
     Facets of a master are the same by their numbers, surfaces where all slave points have the same
     closest points on them.
     """
+    return _same_master((one, two), _CommonFacets((one, two))).get((0, 1), 0)
+
+
+class _CommonFacets:
+    """How many facets any two groups of contacts have in common, over all ranks.
+
+    Args:
+        contacts: The contacts; the call is collective.
+    """
+
+    def __init__(self, contacts: Sequence[Contact]) -> None:
+        named = {(id(c.model), group): c.model for c in contacts for group in c.groups}
+        self._rows = {key: row for row, key in enumerate(named)}
+        meshes = {id(model.mesh): model.mesh for model in named.values()}
+        # facets of several meshes, one after the other
+        sizes = [m.topology.index_map(m.topology.dim - 1).size_local for m in meshes.values()]
+        starts = dict(zip(meshes, np.cumsum([0, *sizes]), strict=False))
+        facets = [
+            starts[id(model.mesh)] + np.unique(model.owned_facets(group)).astype(np.int64)
+            for (_, group), model in named.items()
+        ]
+        columns = np.concatenate([np.zeros(0, np.int64), *facets])
+        rows = np.repeat(np.arange(len(facets)), [len(one) for one in facets])
+        there = csr_array(
+            (np.ones(len(rows), np.int64), (rows, columns)), (len(facets), sum(sizes))
+        )
+        self._counts = (there @ there.T).toarray()
+        if contacts:
+            self._counts = contacts[0].model.mesh.comm.allreduce(self._counts)
+
+    def of(self, one: Contact, group: str, two: Contact, other: str) -> int:
+        """Facets of a group of one contact that are in a group of another."""
+        rows = self._rows[id(one.model), group], self._rows[id(two.model), other]
+        return int(self._counts[rows])
+
+
+def _same_master(contacts: Sequence[Contact], common: _CommonFacets) -> dict[tuple[int, int], int]:
+    """Facets, over all ranks, that meet the same master in two contacts, by their numbers."""
+    pairs = combinations(range(len(contacts)), 2)
+    counts = {(i, k): _on_groups(contacts[i], contacts[k], common) for i, k in pairs}
+    met = {pair: count for pair, count in counts.items() if count}
+    surfaces = [pair for pair in met if not contacts[pair[0]].meshed]
+    if not surfaces:
+        return met
+    # each surface once, as many of them may meet one slave
+    feet = {number: _Feet(contacts[number]) for number in {n for pair in surfaces for n in pair}}
+    same = np.array([feet[i].same(feet[k]) for i, k in surfaces])
+    contacts[0].model.mesh.comm.Allreduce(MPI.IN_PLACE, same, MPI.LAND)
+    others = {pair for pair, one in zip(surfaces, same, strict=True) if not one}
+    return {pair: count for pair, count in met.items() if pair not in others}
+
+
+def _on_groups(one: Contact, two: Contact, common: _CommonFacets) -> int:
+    """Facets of the slaves of both whose masters have some in common, or are both surfaces."""
     if one.meshed != two.meshed or one.body is not two.body:
         return 0
     pairs = zip(one.groups, two.groups, strict=True)
-    count = min([_common(one, two, *pair) for pair in pairs])
-    return count if count and (one.meshed or _same_surface(one, two)) else 0
+    slaves, *masters = [common.of(one, group, two, other) for group, other in pairs]
+    return slaves if all(masters) else 0
 
 
-def swapped_facets(one: Contact, two: Contact) -> int:
-    """Facets, over all ranks, of the slave of `two` that meet, as a master, its own; collective.
+def _swapped(one: Contact, two: Contact, common: _CommonFacets) -> int:
+    """Facets of the slave of `two` that meet, as a master, its own.
 
     Both contacts would press them apart: pressures are shared at random, and friction pulls.
     """
     if not (one.of_two_groups and two.of_two_groups):
         return 0
     pairs = zip(one.groups, reversed(two.groups), strict=True)
-    masters, slaves = [_common(one, two, *pair) for pair in pairs]
+    masters, slaves = [common.of(one, group, two, other) for group, other in pairs]
     return slaves if masters else 0
 
 
-def _common(one: Contact, two: Contact, group: str, other: str) -> int:
-    """Facets of a group of one contact that are in a group of the other; collective."""
-    mine, others = one.model.owned_facets(group), two.model.owned_facets(other)
-    here = len(np.intersect1d(mine, others)) if one.model.mesh is two.model.mesh else 0
-    return int(one.model.mesh.comm.allreduce(here))
+class _Feet:
+    """Closest points of the slave points of a contact on its surface."""
 
+    def __init__(self, contact: Contact) -> None:
+        self._surface, self._size = contact.surface(), contact.facet_size
+        self._x = contact.slave_points.quadrature.reference
+        self._closest = _closest(self._surface, self._x)
 
-def _same_surface(one: Contact, two: Contact) -> bool:
-    """Whether slave points of both have the same closest points; collective."""
-    x = np.concatenate([contact.slave_points.quadrature.reference for contact in (one, two)])
-    far = np.abs(x).max(initial=0.0) + one.facet_size
-    apart = np.abs(_closest(one.surface(), x) - _closest(two.surface(), x))
-    differs = int(not (apart <= SAME * far).all())
-    return not one.model.mesh.comm.allreduce(differs)
+    def same(self, other: _Feet) -> bool:
+        """Whether the slave points of both, on this rank, have the same ones on both surfaces."""
+        far = np.abs(np.concatenate([self._x, other._x])).max(initial=0.0) + self._size
+        mine, theirs = self._closest, other._closest
+        if not np.array_equal(self._x, other._x):
+            mine = np.concatenate([mine, _closest(self._surface, other._x)])
+            theirs = np.concatenate([_closest(other._surface, self._x), theirs])
+        return bool((np.abs(mine - theirs) <= SAME * far).all())
 
 
 def _closest(surface: Surface, x: Floats) -> Floats:

@@ -172,11 +172,32 @@ def _check_sides(contact: Beginning, size: float) -> None:
         contact,
         wrong,
         f"{contact.slave!r} faces the same way as its master: at {{point}} the normals of slave "
-        f"and master are {{outward}} and {{normal}}; turn the surface over (a bore: inside = true, "
-        "a plane: its normal the other way), or name the facets on the other side",
+        f"and master are {{outward}} and {{normal}}; {_other_side(contact)}",
         "master",
         seen.normal,
     )
+
+
+def _other_side(contact: Beginning) -> str:
+    """What helps where slave and master face the same way."""
+    if not contact.master.groups:
+        return (
+            "turn the surface over (a bore: inside = true, a plane: its normal the other way), or "
+            "name the facets on the other side"
+        )
+    if _of_one_body(contact):
+        return (
+            "name the facets on the other side, or both as one group with self_contact = true "
+            "where the body folds onto itself"
+        )
+    return "name the facets on the other side"
+
+
+def _of_one_body(contact: Beginning) -> bool:
+    """Whether slave and master are facets of one body."""
+    body = contact.slave.partition(".")[0]
+    groups = contact.master.groups
+    return bool(groups) and all(group.partition(".")[0] == body for group in groups)
 
 
 def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal: Floats) -> None:
@@ -186,8 +207,7 @@ def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal:
     """
     body = contact.slave.partition(".")[0]
     comm = contact.space.mesh.comm
-    own = all(group.partition(".")[0] == body for group in contact.master.groups)
-    if not (own and contact.master.groups) or comm.allreduce(int((located & ~behind).sum())):
+    if not _of_one_body(contact) or comm.allreduce(int((located & ~behind).sum())):
         return
     if not contact.master.connected_to_slave():
         return
