@@ -47,10 +47,10 @@ def test_a_flow_over_the_limit_of_friction(
 
 
 def only_flows(monkeypatch: pytest.MonkeyPatch) -> None:
-    def regularised(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
+    def regularised(self: Attempts, *, full: Any, **_: Any) -> list[Any]:
         return [replace(full, regularised=True)]
 
-    monkeypatch.setattr(Attempts, "_ways", regularised)
+    monkeypatch.setattr(Attempts, "_ordered", regularised)
 
 
 def jumping(pair: bool, exact: bool, mortar: bool, gap: float = 0.0, **parts: Any) -> Problem:

@@ -247,8 +247,8 @@ def test_flow_that_leaves_the_reach_begins_anew(monkeypatch: pytest.MonkeyPatch)
     model = _model(n=3, length=3.0)
     laws = (*LAWS[:2], Friction(coefficients=(1e-9, 5e-10), directions=MARKS))
     *_, wanted = _run(_pair(model, laws, reach=0.2), [PRESS, away], "direct")
-    regularised = lambda _, __, full, ___: [replace(full, regularised=True)]  # noqa: E731
-    monkeypatch.setattr(attempts.Attempts, "_ways", regularised)
+    regularised = lambda _, full, **__: [replace(full, regularised=True)]  # noqa: E731
+    monkeypatch.setattr(attempts.Attempts, "_ordered", regularised)
     notes: list[str] = []
     ours, _, found = _run(_pair(model, laws, reach=0.2), [PRESS, away], "condensed", notes)
     assert any("widened" in note for note in notes)

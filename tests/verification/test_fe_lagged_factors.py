@@ -124,7 +124,7 @@ def test_no_attempt_is_made_twice(material: dict[str, Any], count: int) -> None:
     searching, full = _Attempt(x, full_steps=False), _Attempt(x)
     assert len(attempts._apart(searching, full)) == count
     for start, ways in ((searching, count), (replace(searching, ratio=1.0), 2)):
-        found = attempts._ways(start, full, USUAL)
+        found = attempts._ordered(searching=start, full=full, led=USUAL)
         others = [""] * (ways - 1)
         assert [way.detour for way in found] == ["", COMPLIANT, *others, GRADED]
 

@@ -28,10 +28,10 @@ STRATEGIES = ["direct", "condensed", "iterative"]
 def _always_regularised(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every attempt starts from the accepted state, with viscous forces."""
 
-    def ways(self: Attempts, searching: Any, full: Any, led: str) -> list[Any]:
+    def ordered(self: Attempts, *, full: Any, **_: Any) -> list[Any]:
         return [replace(full, regularised=True)]
 
-    monkeypatch.setattr(Attempts, "_ways", ways)
+    monkeypatch.setattr(Attempts, "_ordered", ordered)
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

@@ -219,44 +219,59 @@ class Attempts:
     ) -> list[_Attempt]:
         """Attempts in their order, without the last resorts; arguments as of `solve`."""
         searching, full = _Attempt(first, ratio, full_steps=False), _Attempt(last)
-        ways = self._ways(searching, full, control.way)
+        ways = self._ordered(searching=searching, full=full, led=control.way)
         if not (control.may_relax and PENALTIES in self._problem.contact_term.ways):
             return ways
         relaxed = [replace(way, multipliers=PENALTIES) for way in self._apart(searching, full)]
         return [*(ways[:1] if control.relaxed else ways), *relaxed]
 
-    def _ways(self, searching: _Attempt, full: _Attempt, led: str) -> list[_Attempt]:
-        trusts = self._problem.stabilisation.trusts
+    def _ordered(self, *, searching: _Attempt, full: _Attempt, led: str) -> list[_Attempt]:
+        """Attempts in their order, without penalties in the place of multipliers.
+
+        Args:
+            searching: From the extrapolated state with a line search.
+            full: From the accepted state in full steps.
+            led: What led to the last equilibrium, see `Outcome.way`.
+        """
         stiff, layered = self._continuation.stiff(), replace(full, detour=LAYERED)
+        freely = self._problem.stabilisation.trusts  # one without springs comes before
         if self._problem.contact_term.simultaneous:
-            cycles = IN_CYCLES in self._problem.contact_term.ways
-            schemes = [USUAL, SOFTER]
-            if cycles and not self._problem.linear:
-                schemes.append(SLENDER)
-            if cycles:
-                slender = self._problem.contact_term.slender
-                schemes += [GRADED_SLENDER if slender else GRADED, SINGLY]
-            if led != GRADED:  # it leads bodies that do not bend by detours: 504 corrections for 99
-                schemes.sort(key=led.__ne__)
-            ways = _following(searching, full, schemes, cycles, trusts)
+            ways = self._to_multipliers(searching=searching, full=full, led=led)
         else:
             both = [searching, full] if stiff else self._apart(searching, full)
             if stiff and self._continuation.easy:
-                return [*[layered] * (2 if trusts else 1), *both]
-            ways = [both[0], *both] if trusts else both
+                return [*[layered] * (1 + freely), *both]
+            ways = [*both[:1] * freely, *both]
             if not stiff:
-                # slender bodies, which bend, are led to penalties from soft ones or not at all
-                suits = self._problem.contact_term.compact and self._compliant.contacts
-                places = {
-                    COMPLIANT: (suits, max(1, len(ways) - 1)),
-                    GRADED: (self._graded.contacts, len(ways) + 1),
-                }
-                for detour, (contacts, place) in places.items():
-                    if contacts:
-                        ways.insert(1 if led == detour else place, replace(full, detour=detour))
-        if stiff:
-            ways.insert(2 if trusts else 1, layered)
-        return ways
+                return self._with_detours(ways, full, led)
+        if not stiff:
+            return ways
+        begun, later = ways[: 1 + freely], ways[1 + freely :]
+        return [*begun, layered, *later]
+
+    def _to_multipliers(self, *, searching: _Attempt, full: _Attempt, led: str) -> list[_Attempt]:
+        """Ways to multipliers that follow every correction; arguments as of `_ordered`."""
+        cycles = IN_CYCLES in self._problem.contact_term.ways
+        schemes = [USUAL, SOFTER]
+        if cycles and not self._problem.linear:
+            schemes.append(SLENDER)
+        if cycles:
+            slender = self._problem.contact_term.slender
+            schemes += [GRADED_SLENDER if slender else GRADED, SINGLY]
+        if led != GRADED:  # it leads bodies that do not bend by detours: 504 corrections for 99
+            schemes.sort(key=led.__ne__)
+        freely = self._problem.stabilisation.trusts
+        return _following(searching, full, schemes=schemes, cycles=cycles, freely=freely)
+
+    def _with_detours(self, ways: list[_Attempt], full: _Attempt, led: str) -> list[_Attempt]:
+        """Penalties by way of multipliers before the last of some ways, from soft ones after it."""
+        # slender bodies, which bend, are led to penalties from soft ones or not at all
+        suits = self._problem.contact_term.compact and self._compliant.contacts
+        compliant = [replace(full, detour=COMPLIANT)] if suits else []
+        graded = [replace(full, detour=GRADED)] if self._graded.contacts else []
+        first, *later = ways
+        order = [*later[:-1], *compliant, *later[-1:], *graded]
+        return [first, *sorted(order, key=lambda way: way.detour != led)]
 
     def _apart(self, searching: _Attempt, full: _Attempt) -> list[_Attempt]:
         """Both ways; one where there is neither extrapolation nor a line search between them."""
@@ -339,7 +354,7 @@ class Attempts:
 
 
 def _following(
-    first: _Attempt, last: _Attempt, schemes: Sequence[str], cycles: bool, trusts: bool
+    first: _Attempt, last: _Attempt, *, schemes: Sequence[str], cycles: bool, freely: bool
 ) -> list[_Attempt]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
@@ -354,13 +369,13 @@ def _following(
         last: From the accepted state.
         schemes: Those of the first attempts, in the order in which they are tried.
         cycles: Whether multipliers can be found in cycles instead.
-        trusts: Whether the first attempt has no springs where contact may hold free bodies.
+        freely: Whether the first attempt has no springs where contact may hold free bodies.
     """
     usual = replace(first, spare=cycles)
     begun = [replace(usual, multipliers=one) for one in schemes]
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
-    ways = [again] if trusts or cycles else []
-    if trusts and cycles:
+    ways = [again] if freely or cycles else []
+    if freely and cycles:
         ways.append(again)
     if first.start is not last.start:
         ways.append(replace(last, multipliers=again.multipliers))
