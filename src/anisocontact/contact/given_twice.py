@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
@@ -28,6 +28,8 @@ def check_given_once(contacts: Sequence[Contact], field: str) -> None:
     Raises:
         InputError: Names the contacts and how many facets they share.
     """
+    if len(contacts) < 2:
+        return
     common = _CommonFacets(contacts)
     met = _same_master(contacts, common)
     for pair in combinations(range(len(contacts)), 2):
@@ -72,12 +74,11 @@ class _CommonFacets:
         ]
         columns = np.concatenate([np.zeros(0, np.int64), *facets])
         rows = np.repeat(np.arange(len(facets)), [len(one) for one in facets])
-        there = csr_array(
+        there = scipy.sparse.csr_array(
             (np.ones(len(rows), np.int64), (rows, columns)), (len(facets), sum(sizes))
         )
         self._counts = (there @ there.T).toarray()
-        if contacts:
-            self._counts = contacts[0].model.mesh.comm.allreduce(self._counts)
+        self._counts = contacts[0].model.mesh.comm.allreduce(self._counts)
 
     def of(self, one: Contact, group: str, two: Contact, other: str) -> int:
         """Facets of a group of one contact that are in a group of another."""
