@@ -27,6 +27,7 @@ RETIRED = {
     r"inside out": "inverted",
     r"points? that hop": "points that alternate",
     r"\binner forces?\b": "internal force",
+    r"\blips?\b": "faces of a crack",
     r"\bCourse\b|\bcourses_of\b": "load curve",
 }
 PAGES = [p for p in (ROOT / "docs").rglob("*.md") if not {"_build", "generated"} & set(p.parts)]

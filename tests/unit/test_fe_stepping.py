@@ -233,14 +233,14 @@ def test_alternating_points_are_found():
     for i in range(6):
         contact.trial.status[:] = (1, 1 + i % 2, 0 if i < 3 else 1)
         watch.note(1.0)
-    assert watch.alternating()[0].tolist() == [False, True, False]
+    assert watch.chattering()[0].tolist() == [False, True, False]
     assert watch.unsettled()
     assert watch.history(0)[:, 1].tolist() == [1, 2, 1, 2, 1, 2]
     for _ in range(3):
         watch.note(1.0)
     assert not watch.unsettled()
     watch.clear()
-    assert not watch.alternating()[0].any()
+    assert not watch.chattering()[0].any()
 
 
 def test_points_at_the_border_of_the_master_are_named():
@@ -252,10 +252,11 @@ def test_points_at_the_border_of_the_master_are_named():
         contact.trial.status[:] = i % 2
         contact.located = lambda i=i: np.array([True, i % 2 == 1])
         watch.note(1.0)
-    assert watch.alternating()[0].all()
+    assert watch.chattering()[0].all()
     assert watch.on_border(0).tolist() == [False, True]
     found = [
-        Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=bool(b)) for b in watch.on_border(0)
+        Culprit("chattering", (0.0, 0.0, 0.0), "", "sole", border=bool(b))
+        for b in watch.on_border(0)
     ]
     told = explained("no convergence", found, [])
     assert "2 slave points alternates (chattering), 1 of them at the border" in told
@@ -275,7 +276,7 @@ def test_advice_at_a_border_is_what_the_contact_can_have(meshed, nodes, advice):
     """Requirement: no other side where the master is a surface, no pass that it has already."""
     points = SimpleNamespace(at_nodes=nodes)
     contact = SimpleNamespace(name="sole", of_two_groups=meshed, slave_points=points)
-    found = [Culprit("flipping", (0.0, 0.0, 0.0), "", "sole", border=True)]
+    found = [Culprit("chattering", (0.0, 0.0, 0.0), "", "sole", border=True)]
     other = SimpleNamespace(name="lid", of_two_groups=False, slave_points=points)
     assert explained("gone", found, [contact, other]).endswith(f"border of the master{advice}")
 
@@ -330,7 +331,7 @@ def test_chattering_is_named_and_damped(fe, monkeypatch):
         run(cuts, 0.1)
     assert "slave points alternates (chattering)" in cuts[0].reason
     culprit = cuts[0].culprits[0]
-    assert culprit.kind == "flipping"
+    assert culprit.kind == "chattering"
     assert set(culprit.statuses) > {"open"}
     assert "the status alternates between" in str(culprit)
 

@@ -34,6 +34,9 @@ def test_names_are_those_of_their_packages():
         ("anisocontact", "Expanding", "ThermalExpansion"),
         ("anisocontact.solver", "courses_of", "load_curves"),
         ("anisocontact.bulk", "bare", "without_expansion"),
+        ("anisocontact.bulk", "Before", "PreviousState"),
+        ("anisocontact.laws", "Carried", "CarriedDirections"),
+        ("anisocontact.laws", "carried", "carried_directions"),
     ],
 )
 def test_names_of_before(package: str, before: str, today: str) -> None:

@@ -1,4 +1,4 @@
-"""Points that hop between facets of unequal normal: how they are seen, held and named."""
+"""Points that alternate between facets of unequal normal: how they are seen, held and named."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def _contact(codes: list[int]) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("codes", "residuals", "hops"),
+    ("codes", "residuals", "alternate"),
     [
         ([3, 6, 3, 6, 6, 6, 6], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.51], True),
         ([3, 6, 9, 3, 6, 6, 6], [1.0, 0.9, 0.9, 0.8, 0.7, 0.6, 0.51], True),
@@ -160,7 +160,7 @@ def _contact(codes: list[int]) -> Any:
         *("repeats", "gains nothing", "falls a little", "three alone", "repeats, but stays"),
     ],
 )
-def test_points_that_hop_are_held(codes, residuals, hops):
+def test_points_that_alternate_are_held(codes, residuals, alternate):
     """Two returns to a facet of late, where the residual has not halved in six iterations.
 
     Or where it repeats every second time, to a thousandth of it: nothing would end that.
@@ -170,9 +170,9 @@ def test_points_that_hop_are_held(codes, residuals, hops):
     for residual in residuals:
         watch.note(residual)
         watch.hold()
-    assert any(flags.any() for flags in contact.held) == hops
+    assert any(flags.any() for flags in contact.held) == alternate
     watch.clear()
-    assert not watch.hopping()[0].any()
+    assert not watch.alternating_facets()[0].any()
 
 
 def test_a_point_that_hops_is_named_with_its_facets():
@@ -190,5 +190,5 @@ def test_a_point_that_hops_is_named_with_its_facets():
         contacts=[contact], comm=comm, inverted_cells=lambda: np.zeros((0, 3))
     )
     (culprit,) = find_culprits(problem, watch, np.zeros(3))
-    assert culprit.kind == "hopping"
+    assert culprit.kind == "alternating facets"
     assert "alternates between the facets 0 and 1 of the master" in str(culprit)

@@ -258,7 +258,7 @@ def _mortar_folded() -> Made:
 
 
 def _mortar_crack() -> Made:
-    """A crack whose lips slide: its front, which both have, bears nothing on any process."""
+    """A crack whose faces slide: its front, which both have, bears nothing on any process."""
     cells, middle, front = (6, 3, 4), 2, 4
     axes = [np.linspace(0.0, 1.0, count + 1) for count in cells]
     x = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -284,9 +284,9 @@ def _mortar_crack() -> Made:
         name: of_half[half][np.isin(of_half[half], nodes).all(axis=1)]
         for name, (half, nodes) in named.items()
     }
-    lip = x[opened.ravel()]
-    lip[:, 2] += 2e-3 * (axes[0][front] - lip[:, 0])
-    points, body = np.concatenate([x, lip]), {"c": np.arange(len(rows))}
+    face = x[opened.ravel()]
+    face[:, 2] += 2e-3 * (axes[0][front] - face[:, 0])
+    points, body = np.concatenate([x, face]), {"c": np.arange(len(rows))}
     model = Model.from_arrays(MeshArrays("hexahedron", 1, points, rows, body, facets, 1))
     pair = Contact(model, "c.upper", "c.lower", _law(), mortar=True)
     problem = Problem(model, {"c": make_material("linear-elastic", E=8.0, nu=0.3)}, [pair])

@@ -74,7 +74,7 @@ def test_bodies_that_are_condensed(tmp_path: Path) -> None:
 
 
 def test_on_both_sides_from_the_start(tmp_path: Path) -> None:
-    """A ring that reaches around its plane has no mirror image: the plane is a guide."""
+    """A ring that reaches around its plane has no mirror image: the plane is a support."""
     assert crossed(tmp_path, end=200, model="linear-elastic", way=-0.1) == [{}, {}]
 
 

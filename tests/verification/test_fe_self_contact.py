@@ -130,11 +130,11 @@ def test_hairpin_against_its_half(material: str, augmented: bool) -> None:
     np.testing.assert_allclose(*most, rtol=1e-3)
 
 
-def one_body(parts: Sequence[Body], lips: Sequence[str]) -> Model:
-    """Parts as one body "c", whose group "lips" has facets of several of them."""
+def one_body(parts: Sequence[Body], faces: Sequence[str]) -> Model:
+    """Parts as one body "c", whose group "faces" has facets of several of them."""
     made = merge([part.arrays() for part in parts])
     facets = {f"c.{name.replace('.', '_')}": rows for name, rows in made.facets.items()}
-    facets["c.lips"] = np.concatenate([made.facets[name] for name in lips])
+    facets["c.faces"] = np.concatenate([made.facets[name] for name in faces])
     cells = np.arange(len(made.cells))
     arrays = MeshArrays(
         made.cell, made.degree, made.points, made.cells, {"c": cells}, facets, made.order
@@ -153,7 +153,7 @@ def _slit(cell: str = "hexahedron", order: int = 1, gap: float = 0.0) -> Model:
 
 
 def _lips(model: Model, law: ContactLaw | None = None, **options: Any) -> Contact:
-    return Contact(model, "c.lips", "c.lips", law or _law(), self_contact=True, **options)
+    return Contact(model, "c.faces", "c.faces", law or _law(), self_contact=True, **options)
 
 
 def _law(mu: float = 0.3) -> ContactLaw:
@@ -166,9 +166,9 @@ def _law(mu: float = 0.3) -> ContactLaw:
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
 def test_patch(cell: str, order: int, augmented: bool, gap: float) -> None:
-    """Uniform compression across the lips of a slit, closed or open: 1e-8 at every slave node.
+    """Uniform compression across the faces of a slit, closed or open: 1e-8 at every slave node.
 
-    Source: uniform stress; 4 x 4 on 3 x 3 facets, as of two bodies. The finer lip is the slave.
+    Source: uniform stress; 4 x 4 on 3 x 3 facets, as of two bodies. The finer face is the slave.
     """
     model, pressure = _slit(cell, order, gap), 10.0
     exact = Augmentation(tangential=False) if augmented else None
@@ -198,7 +198,7 @@ def _cells_above(model: Model) -> npt.NDArray[np.int32]:
 
 
 def _crack(n: int) -> Model:
-    """A block with a closed crack from its right side to the middle; its lips share the front."""
+    """A block with a closed crack from its right side to the middle; its faces share the front."""
     parts = [
         Body("u", BoxSpec((0, 0, 0), (1, 1, 0.5), (n, 2, n))),
         Body("l", BoxSpec((0, 0, -0.5), (1, 1, 0.5), (n, 2, n))),
@@ -212,8 +212,8 @@ def _crack(n: int) -> Model:
     joined[whole] = first[which.reshape(-1)[whole]]
     kept, number = np.unique(joined, return_inverse=True)
     facets = {f"c.{k.replace('.', '_')}": number[rows] for k, rows in made.facets.items()}
-    lips = np.concatenate([facets["c.u_bottom"], facets["c.l_top"]])
-    facets["c.lips"] = lips[x[kept][lips][..., 0].min(axis=1) >= 0.5]
+    faces = np.concatenate([facets["c.u_bottom"], facets["c.l_top"]])
+    facets["c.faces"] = faces[x[kept][faces][..., 0].min(axis=1) >= 0.5]
     for name in ("c.u_bottom", "c.l_top"):
         del facets[name]
     cells = number[made.cells]
@@ -267,9 +267,9 @@ def _drawn(model: Model, contact: Contact) -> tuple[Floats, Floats]:
 
 @pytest.mark.parametrize("augmented", [False, True], ids=["penalty", "multipliers"])
 def test_slides_as_a_pair(augmented: bool) -> None:
-    """Lips that slide on each other with friction, over facets: what two bodies do, 1e-9.
+    """Faces that slide on each other with friction, over facets: what two bodies do, 1e-9.
 
-    Source: the same equations once the finer lip is the slave, which it stays.
+    Source: the same equations once the finer face is the slave, which it stays.
     """
     parts = _parts("hexahedron", 1, 0.02)
     exact = Augmentation() if augmented else None
@@ -281,7 +281,7 @@ def test_slides_as_a_pair(augmented: bool) -> None:
 
 
 def _moved(contact: Contact, model: Model, shift: Floats) -> tuple[Floats, Floats]:
-    """Two committed increments of warped lips that slide, the last and one towards a third."""
+    """Two committed increments of warped faces that slide, the last and one towards a third."""
     rng = np.random.default_rng(3)
     u = np.zeros_like(model.space.tabulate_dof_coordinates())
     for noise in (0.004, 0.002):
@@ -316,7 +316,7 @@ def _star() -> tuple[Model, Floats]:
     ("cell", "order"), [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 2), ("three", 1)]
 )
 def test_tangent(cell: str, order: int) -> None:
-    """Second order, and forces that balance, where lips warp and slide, also of three walls.
+    """Second order, and forces that balance, where faces warp and slide, also of three walls.
 
     Source: central differences, third law. Of three walls that meet in a point no two can all have
     different sides: facets there are slaves of some and masters of others.

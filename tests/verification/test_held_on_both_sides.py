@@ -200,27 +200,29 @@ def _leaning(degrees: float, guided: bool) -> tuple[Accepted, Floats]:
     contact = Contact(model, "block.left", wall, Friction(coefficients=0.2))
     steel = {"block": make_material("linear-elastic", E=1e3, nu=0.3)}
     problem = Problem(model, steel, [contact], symmetry=["block.bottom"])
-    guide = Cylindrical({"radial": -0.01}, point=up - 4.0 * away)
+    support = Cylindrical({"radial": -0.01}, point=up - 4.0 * away)
     into: dict[str, Any] = {"displacement": {"block.edge": {"x": -0.01}}}
     if guided:
-        into = {"cylindrical": {"block.edge": guide}}
+        into = {"cylindrical": {"block.edge": support}}
     step = Step("press", 1, pressure={"block.right": 2.0}, **into)
     (accepted,) = Solver(problem, [step]).run()
     return accepted, frame @ accepted.resultants[contact.name][0]
 
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])
-def test_a_guide_along_the_normal_holds_as_a_displacement_along_an_axis(angle: float) -> None:
-    """Guides said nothing of the pressure where they hold, and multipliers failed there.
+def test_an_inclined_support_along_the_normal_holds_as_a_displacement_along_an_axis(
+    angle: float,
+) -> None:
+    """They said nothing of the pressure where they hold, and multipliers failed there.
 
-    Requirement: all of it turned, with a guide in the place of a displacement along x, has the
+    Requirement: all of it turned, with a cylindrical support for a displacement along x, has the
     forces turned, and the same is told. Tolerance: that of Newton's method.
     """
     by_axis, force = _leaning(0.0, False)
-    by_guide, turned = _leaning(angle, True)
-    assert not by_guide.relaxed
-    assert len(by_guide.undetermined) == 1
-    assert by_guide.undetermined == by_axis.undetermined
+    by_cylinder, turned = _leaning(angle, True)
+    assert not by_cylinder.relaxed
+    assert len(by_cylinder.undetermined) == 1
+    assert by_cylinder.undetermined == by_axis.undetermined
     np.testing.assert_allclose(turned, force, rtol=1e-7, atol=1e-7)
 
 
@@ -232,10 +234,10 @@ def test_walls_of_guides_are_those_of_displacements() -> None:
     """
     still = Cylindrical({"radial": 0.0, "tangential": 0.0}, point=(3.0, -5.0, 0.0))
     by_axes, contact = _run("direct")
-    by_guides, _ = _run("direct", wall={"cylindrical": dict.fromkeys(WALL, still)})
-    assert [a.undetermined for a in by_guides] == [a.undetermined for a in by_axes]
+    by_cylinders, _ = _run("direct", wall={"cylindrical": dict.fromkeys(WALL, still)})
+    assert [a.undetermined for a in by_cylinders] == [a.undetermined for a in by_axes]
     assert by_axes[-1].undetermined == {contact.name: 1}
     for group in WALL:
-        assert by_guides[-1].reactions[group] == pytest.approx(
+        assert by_cylinders[-1].reactions[group] == pytest.approx(
             by_axes[-1].reactions[group], abs=1e-7
         )

@@ -20,7 +20,7 @@ def test_bodies_that_flow_in_vain_are_not_the_reason(monkeypatch: pytest.MonkeyP
     def attempt(_: Attempts, way: Any) -> tuple[NewtonResult, list[Culprit]]:
         reason = "the bodies do not come to rest" if way.regularised else "no convergence"
         flowed.append(way.regularised)
-        kind = "inverted" if way.regularised else "flipping"
+        kind = "inverted" if way.regularised else "chattering"
         return NewtonResult(1, [1.0], reason), [Culprit(kind, (0.0, 0.0, 0.0), "here", "c")]
 
     flowed: list[bool] = []

@@ -106,7 +106,7 @@ def test_regularisation_comes_last_and_where_it_may(
     def alternating(self: Attempts, way: Any) -> Any:
         tried.append(_named(way))
         result, _ = attempt(self, way)
-        return result, [attempts.Culprit("flipping", (0.0, 0.0, 0.0), "")]
+        return result, [attempts.Culprit("chattering", (0.0, 0.0, 0.0), "")]
 
     monkeypatch.setattr(Attempts, "_attempt", alternating)
     five = ["plain", "compliant", "plain", "graded", "damped"]

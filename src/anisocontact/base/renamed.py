@@ -11,9 +11,12 @@ from typing import Any, NamedTuple
 
 #: Names of before and those of today, in the packages that have them.
 RENAMED = {
+    "Before": "PreviousState",
+    "Carried": "CarriedDirections",
     "Course": "LoadCurve",
     "Expanding": "ThermalExpansion",
     "bare": "without_expansion",
+    "carried": "carried_directions",
     "courses_of": "load_curves",
 }
 

@@ -5,7 +5,7 @@ from typing import Any
 from anisocontact.base.renamed import renamed
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.expansion import Heated, ThermalExpansion, without_expansion
-from anisocontact.bulk.history import Before, BodyHistory, HistoryMaterial
+from anisocontact.bulk.history import BodyHistory, HistoryMaterial, PreviousState
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
     NeoHookeanIncompressible,
@@ -43,7 +43,6 @@ from anisocontact.bulk.volume import Volume
 __all__ = [
     "PLASTIC_STRAIN",
     "AtPoints",
-    "Before",
     "BodyHistory",
     "BodyPoints",
     "ElasticVolume",
@@ -64,6 +63,7 @@ __all__ = [
     "PointLaw",
     "PointResult",
     "PointState",
+    "PreviousState",
     "StVenantKirchhoff",
     "ThermalExpansion",
     "TransverselyIsotropic",

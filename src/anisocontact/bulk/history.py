@@ -19,7 +19,7 @@ from anisocontact.mesh import Model
 
 
 @dataclass(frozen=True)
-class Before:
+class PreviousState:
     """Internal variables of the last accepted increment, and the time since.
 
     Attributes:
@@ -62,7 +62,7 @@ class HistoryMaterial(Protocol):
 
     history: Mapping[str, tuple[int, ...]]
 
-    def piola(self, u: Any, before: Before) -> Any:
+    def piola(self, u: Any, before: PreviousState) -> Any:
         """First Piola-Kirchhoff stress at the end of an increment.
 
         Args:
@@ -74,7 +74,7 @@ class HistoryMaterial(Protocol):
         """
         ...
 
-    def advance(self, u: Any, before: Before) -> Mapping[str, Any]:
+    def advance(self, u: Any, before: PreviousState) -> Mapping[str, Any]:
         """All internal variables at the end of an increment.
 
         Args:
@@ -119,7 +119,7 @@ class BodyHistory(AtPoints):
     ) -> None:
         super().__init__(model, body, material.history, degree, heated)
         self._material = material
-        self.before = Before(self.variables, dt)
+        self.before = PreviousState(self.variables, dt)
         after = dict(material.advance(u, self.before))
         if after.keys() != self.variables.keys():
             text = f"advance gives {', '.join(after)}, history has {', '.join(self.variables)}"

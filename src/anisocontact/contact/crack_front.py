@@ -1,4 +1,4 @@
-"""Slave nodes of the front of a crack, which both lips have: nothing opens or slides there."""
+"""Slave nodes of the front of a crack, which both faces have: nothing opens or slides there."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class CrackFront:
     def opposite_themselves(self, weights: MortarWeights) -> Ints:
         """Slave nodes that are opposite themselves.
 
-        Once the lips slide, what is left of their own weight would let a pressure grow that
+        Once the faces slide, what is left of their own weight would let a pressure grow that
         displacements of their neighbours hardly change.
 
         Args:

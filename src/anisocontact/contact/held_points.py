@@ -1,9 +1,9 @@
 """Slave points that are held on a facet of the master while equilibrium is sought.
 
 Where two facets meet at an angle the closest point jumps from one to the other, and with it the
-normal. A point whose equilibrium is there hops to and fro from one correction to the next. Held, it
-is projected on its facet as if that went on beyond its sides: there the gap is wrong by how far it
-is outside times the angle, see `Master.strayed`.
+normal. A point whose equilibrium is there alternates between facets from one correction to the
+next. Held, it is projected on its facet as if that went on beyond its sides: there the gap is wrong
+by how far it is outside times the angle, see `Master.strayed`.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from anisocontact.base.shown import shown
 from anisocontact.contact.integration_points import IntegrationPoints
 from anisocontact.contact.master import Master
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State
-from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
+from anisocontact.laws import Adhesion, CarriedDirections, Friction, NormalLaw
 
 #: Cosine of the angle of the normals of slave and master above which they point the same way.
 SAME_WAY = 0.5
@@ -221,11 +221,11 @@ def _check_not_behind(contact: Beginning, behind: Flags, located: Flags, normal:
     )
 
 
-def _fields(law: Interface | ContactLaw) -> list[Carried]:
+def _fields(law: Interface | ContactLaw) -> list[CarriedDirections]:
     return [one for one in law.carried if one.field is not None]
 
 
-def _singular(contact: Beginning, one: Carried, size: float) -> Flags:
+def _singular(contact: Beginning, one: CarriedDirections, size: float) -> Flags:
     """Points at which a field has no direction: asked by pressing every point a little."""
     law = (
         NormalLaw(penalty=1.0),

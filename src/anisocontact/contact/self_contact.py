@@ -3,7 +3,7 @@
 Of two facets that face each other one is the slave, so that every gap is held once, by multipliers
 that the displacements can hold: the sides of a surface that folds onto itself are told apart where
 it does. The graph of the pairs is coloured with two colours along its minimum spanning tree, the
-closest pairs first. What faces one another facet by facet, as the lips of a slit whose meshes
+closest pairs first. What faces one another facet by facet, as the faces of a slit whose meshes
 match, is in as many parts, and facets that go on smoothly beside each other have one colour where
 pairs leave it open, at the round end of a fold last of all. A facet keeps its colour, and with it
 the nodes their history, while anything faces it. Where the tree leaves a pair of one colour, as

@@ -17,7 +17,7 @@ from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
 from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import STATE, State, as_state, raw_state
-from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
+from anisocontact.laws import Adhesion, CarriedDirections, Friction, NormalLaw, carried_directions
 
 #: Forms of evolution whose history is turned as vectors: those that meshed masters, directions on
 #: the slave and multipliers can have.
@@ -58,7 +58,7 @@ class AdhesionAndFriction(CopiedByArguments):
         _check_kind("friction", friction, Friction)
         assert adhesion is not None and friction is not None
         self.adhesion, self.friction = adhesion, friction
-        self.carried: tuple[Carried, ...] = carried(adhesion, friction)
+        self.carried: tuple[CarriedDirections, ...] = carried_directions(adhesion, friction)
         self.model, self.sliding_rule = adhesion.named[0], friction.rule[0]
         self.friction_directions = friction.directions
 

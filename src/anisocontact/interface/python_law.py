@@ -33,7 +33,7 @@ from anisocontact.interface.tangential_law import (
     law_stiffness,
 )
 from anisocontact.interface.wrong_slopes import wrong_slopes
-from anisocontact.laws import SIDES, Adhesion, Carried, Friction, NormalLaw
+from anisocontact.laws import SIDES, Adhesion, CarriedDirections, Friction, NormalLaw
 
 #: How the history enters a step: a law in Python sees it turned to where the point is.
 EVOLUTION = "transport"
@@ -106,7 +106,9 @@ class PythonLaw(CopiedByArguments):
             raise InputError(text, "directions_on")
         check_own_variables(law)
         self.law, self.friction_directions = law, directions
-        self.carried: tuple[Carried, ...] = (Carried("directions", directions, directions_on),)
+        self.carried: tuple[CarriedDirections, ...] = (
+            CarriedDirections("directions", directions, directions_on),
+        )
         self.dtype = state_type(law.internal)
         self._seen: list[tuple[LawState, LawKinematics]] = []  # the last input, for `doubts`
 

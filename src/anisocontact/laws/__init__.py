@@ -1,12 +1,15 @@
 """Normal law, adhesion and friction with their sliding rules, and the adhesion domain."""
 
+from typing import Any
+
+from anisocontact.base.renamed import renamed
 from anisocontact.laws.core import (
     SIDES,
     Adhesion,
-    Carried,
+    CarriedDirections,
     Friction,
     NormalLaw,
-    carried,
+    carried_directions,
 )
 from anisocontact.laws.domain import (
     Ellipse,
@@ -23,14 +26,14 @@ __all__ = [
     "EXPLICIT",
     "SIDES",
     "Adhesion",
-    "Carried",
+    "CarriedDirections",
     "Ellipse",
     "Friction",
     "NormalLaw",
     "Slide",
     "Strip",
     "adhesion_domain",
-    "carried",
+    "carried_directions",
     "domain_from_tensors",
     "draw_force_plane",
     "draw_tangent_plane",
@@ -38,3 +41,7 @@ __all__ = [
     "numerical_adhesion",
     "slide",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    return renamed(__name__, name)

@@ -275,7 +275,7 @@ def _need_directions(
 
 
 @dataclass(frozen=True)
-class Carried:
+class CarriedDirections:
     """A direction field of the laws of a contact and the body that carries it.
 
     Args:
@@ -284,7 +284,7 @@ class Carried:
         on: "master" or "slave".
 
     Example:
-        >>> Carried("friction.directions", None, "slave").on_slave  # there is no field
+        >>> CarriedDirections("friction.directions", None, "slave").on_slave  # there is no field
         False
     """
 
@@ -315,7 +315,9 @@ class Carried:
             )
 
 
-def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, Carried]:
+def carried_directions(
+    adhesion: Adhesion, friction: Friction
+) -> tuple[CarriedDirections, CarriedDirections, CarriedDirections]:
     """The direction fields of two laws, and which body carries them.
 
     Args:
@@ -326,14 +328,14 @@ def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, C
         Those of adhesion, of friction, and of the second surface of friction.
 
     Example:
-        >>> both = carried(Adhesion(stiffness=(5, 5)), Friction(coefficients=(0.3, 0.3)))
+        >>> both = carried_directions(Adhesion(stiffness=(5, 5)), Friction(coefficients=(0.3, 0.3)))
         >>> [one.field is None for one in both]
         [True, True, True]
     """
     return (
-        Carried("adhesion.directions", adhesion.directions, adhesion.directions_on),
-        Carried("friction.directions", friction.directions, friction.directions_on),
-        Carried(
+        CarriedDirections("adhesion.directions", adhesion.directions, adhesion.directions_on),
+        CarriedDirections("friction.directions", friction.directions, friction.directions_on),
+        CarriedDirections(
             "friction.directions_second",
             friction.directions_second,
             friction.directions_second_on,

@@ -121,7 +121,7 @@ def check_resultants(
             body, or of a group that nothing holds.
     """
     found = {n: what.nodes(problem, f"output.resultant.{n}") for n, what in resultants.items()}
-    held = dict.fromkeys([*problem.guides.groups, *problem.attached.supported, *problem.coupled])
+    held = dict.fromkeys([*problem.inclined.groups, *problem.attached.supported, *problem.coupled])
     held |= dict.fromkeys(group for step in steps for group in step.prescribed_groups())
     nodes = np.unique(np.concatenate([np.zeros(0, int), *map(problem.model.nodes, held)]))
     for name, what in resultants.items():

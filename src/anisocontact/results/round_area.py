@@ -62,7 +62,7 @@ def _planes(problem: Problem, contact: Contact) -> Iterator[tuple[Floats, float]
     slave = np.unique(contact.quadrature.nodes)
     slave = slave[slave < len(x)]
     found: list[Floats] = []
-    for nodes, normal in (*problem.supports.resting(), *problem.guides.of_planes()):
+    for nodes, normal in (*problem.supports.resting(), *problem.inclined.of_planes()):
         at, on = x[slave] @ normal, x[np.intersect1d(slave, nodes)] @ normal
         local = [at.min(initial=np.inf), -at.max(initial=-np.inf)]
         local += [on.min(initial=np.inf), -on.max(initial=-np.inf)]

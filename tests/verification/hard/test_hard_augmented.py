@@ -158,8 +158,8 @@ def test_plates_with_mortar(to_the_end, member):
 def test_points_above_the_rims_of_facets(to_the_end, strategy):
     """Slave points over the sides and corners of facets of the master, which dents: no cut.
 
-    Each of those points has up to four facets of unequal normal below it and hops between them.
-    Symmetry of mesh and load: no force along x and y, to the tilt of the facets, 1e-3.
+    Each of those points has up to four facets of unequal normal below it and alternates between
+    them. Symmetry of mesh and load: no force along x and y, to the tilt of the facets, 1e-3.
     """
     model = "neo-hookean" if strategy == "direct" else "linear-elastic"
     text = PAIR.format(

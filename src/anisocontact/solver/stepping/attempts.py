@@ -204,7 +204,7 @@ class Attempts:
                 failed, found = result.reason, more_severe(found, culprits)
             far |= result.far > 0.0
             seen |= {culprit.kind for culprit in culprits}
-            alternates = "flipping" in seen and not seen & NEVER_DAMPED
+            alternates = "chattering" in seen and not seen & NEVER_DAMPED
             if way is ways[-1] and not self._final and (alternates or control.tiny or overloaded):
                 ways += self._last_resorts(way, control.small or overloaded)
         reason = explained(failed, found, self._problem.contacts)

@@ -37,8 +37,8 @@ def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> lis
     kinds = (
         _of_laws(problem, watch),
         _inverted(problem),
-        _alternating(problem, watch),
-        _hopping(problem, watch),
+        _chattering(problem, watch),
+        _alternating_facets(problem, watch),
     )
     for kind in kinds:
         found = _everywhere(problem, list(kind))
@@ -78,21 +78,21 @@ def _of_laws(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
             yield _slave_point(problem, watch, i, int(point), "law", FAILURE[failure[point]])
 
 
-def _alternating(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
-    for i, flags in enumerate(watch.alternating()):
+def _chattering(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
+    for i, flags in enumerate(watch.chattering()):
         for point in np.flatnonzero(flags):
             seen = watch.history(i)[:, point]
             names = " and ".join(STATUS[code] for code in np.unique(seen))
             why = f"the status alternates between {names}"
-            found = _slave_point(problem, watch, i, int(point), "flipping", why)
+            found = _slave_point(problem, watch, i, int(point), "chattering", why)
             if watch.on_border(i)[point]:
                 why = f"{why}, over the border of the master and back"
                 found = replace(found, why=why, border=True)
             yield found
 
 
-def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
-    for i, flags in enumerate(watch.hopping()):
+def _alternating_facets(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
+    for i, flags in enumerate(watch.alternating_facets()):
         for point in np.flatnonzero(flags):
             facets = np.unique(facet_of(watch.feet(i)[:, point]))
             names = " and ".join(str(facet) for facet in facets)
@@ -101,7 +101,7 @@ def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
                 why = (
                     f"the closest point alternates between facet {names} of the master and its edge"
                 )
-            yield _slave_point(problem, watch, i, int(point), "hopping", why)
+            yield _slave_point(problem, watch, i, int(point), "alternating facets", why)
 
 
 def strayed(problem: Problem, far: float) -> list[Culprit]:
@@ -121,7 +121,7 @@ def strayed(problem: Problem, far: float) -> list[Culprit]:
         for point in np.flatnonzero(wrong > far * size):
             share = f"{wrong[point] / size:.1g} of the facet size"
             why = f"fixed to a facet beyond its edge: the error of the gap is {share}"
-            found.append(_slave_point(problem, watch, i, int(point), "hopping", why))
+            found.append(_slave_point(problem, watch, i, int(point), "alternating facets", why))
     return _everywhere(problem, found)
 
 

@@ -9,7 +9,7 @@ from anisocontact.solver.stepping.acceptance import INVERTED
 from anisocontact.solver.system.culprit import Culprit
 
 #: Kinds of culprits, the most severe first.
-SEVERITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
+SEVERITY = ("law", "behind", "inverted", "chattering", "alternating facets", "residual")
 #: Kinds that explain a failure by themselves; cells that are inverted do in an equilibrium that is
 #: refused, and where corrections go too far they do not.
 CONCLUSIVE = SEVERITY[:2]
@@ -31,14 +31,14 @@ def explained(reason: str, culprits: list[Culprit], contacts: Sequence[Contact])
     if kind == "inverted":
         # an equilibrium that is none, or a correction too far, which tells nothing of the cells
         return reason if reason == INVERTED else f"{reason}; {INVERTED} by corrections"
-    if kind == "flipping":
+    if kind == "chattering":
         told = f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
         border = [culprit.contact for culprit in culprits if culprit.border]
         if not border:
             return told
         advice = _advice([one for one in contacts if one.name in border])
         return f"{told}, {len(border)} of them at the border of the master{advice}"
-    if kind == "hopping":
+    if kind == "alternating facets":
         return f"{reason}; {len(culprits)} slave points alternate between facets"
     return reason
 

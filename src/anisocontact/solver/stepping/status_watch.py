@@ -56,8 +56,8 @@ class StatusWatch:
         """
         if not self._halted() and not self._repeats():
             return
-        for contact, hops in zip(self._contacts, self.hopping(), strict=True):
-            contact.hold(hops)
+        for contact, alternate in zip(self._contacts, self.alternating_facets(), strict=True):
+            contact.hold(alternate)
 
     def _halted(self) -> bool:
         """Whether the residual has not fallen to its share over some corrections."""
@@ -82,11 +82,11 @@ class StatusWatch:
         above = self._of(self._above, contact)
         return np.asarray(above.any(axis=0) & ~above.all(axis=0))
 
-    def alternating(self) -> list[Flags]:
+    def chattering(self) -> list[Flags]:
         """Points of each contact that changed their status again and again."""
         return [_changes(self.history(i)) >= CHANGES for i in range(len(self._contacts))]
 
-    def hopping(self) -> list[Flags]:
+    def alternating_facets(self) -> list[Flags]:
         """Points of each contact that touch and came back to a facet again and again."""
         return [self._returned(i) >= RETURNS for i in range(len(self._contacts))]
 

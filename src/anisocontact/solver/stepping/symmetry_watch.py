@@ -45,7 +45,7 @@ class SymmetryWatch:
     """Says which bodies have gone through their planes of symmetry, and how far.
 
     A plane of symmetry holds the nodes in it and no others. Bodies of which a part is beyond their
-    plane from the start have no mirror image there: the plane is a guide, and not looked at.
+    plane from the start have no mirror image there: the plane is a support, and not looked at.
 
     Args:
         problem: The problem at the start of the run.
@@ -53,8 +53,8 @@ class SymmetryWatch:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        guides = problem.guides
-        planes = zip(guides.groups, guides.of_planes(), strict=True)
+        inclined = problem.inclined
+        planes = zip(inclined.groups, inclined.of_planes(), strict=True)
         found = [self._plane(group, *plane) for group, plane in planes]
         self._planes = [plane for plane in found if plane is not None]
 

@@ -62,7 +62,7 @@ class ComposedSystem(ReportedSystem):
     @property
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
-        return [*self.guides.groups, *self.attached.names]
+        return [*self.inclined.groups, *self.attached.names]
 
     @property
     def deformable(self) -> list[str]:

@@ -12,10 +12,10 @@ class Culprit:
     """A place that kept an increment from converging.
 
     Attributes:
-        kind: "law" (a slave point whose law fails), "flipping" (a slave point whose status
-            alternates), "hopping" (one whose facet alternates), "inverted" (an inverted cell),
-            "behind" (a body behind its master) or "residual" (the node that is farthest from
-            equilibrium).
+        kind: "law" (a slave point whose law fails), "chattering" (a slave point whose
+            status alternates), "alternating facets" (one whose closest facet alternates),
+            "inverted" (an inverted cell), "behind" (a body behind its master) or "residual" (the
+            node that is farthest from equilibrium).
         position: Where it is, (x, y, z), length.
         why: What is wrong with it.
         contact: Name of the contact of a slave point.

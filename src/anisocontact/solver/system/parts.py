@@ -27,7 +27,7 @@ from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.face_on_body import CoupledFace
 from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
-from anisocontact.solver.terms.guides import Guides
+from anisocontact.solver.terms.inclined_supports import InclinedSupports
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.midside_nodes import constrain_middles, midside_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
@@ -71,7 +71,7 @@ class ProblemParts:
         attached: Elastic supports and springs.
         supports: Prescribed displacements.
         loads: Loads on the bodies.
-        guides: Symmetry planes and cylindrical supports.
+        inclined: Symmetry planes and cylindrical supports.
         stabilisation: Springs that keep bodies in reach.
         sides: Finds bodies behind their masters.
         assembly: All of it as one system of terms.
@@ -86,7 +86,7 @@ class ProblemParts:
     attached: Attachments
     supports: Supports
     loads: Loads
-    guides: Guides
+    inclined: InclinedSupports
     stabilisation: Stabilisation
     sides: SidesKept
     assembly: Assembly
@@ -114,9 +114,9 @@ def make_parts(
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
     tied = _tied(model, like, contacts, connections)
-    guides = _guides(model, connections.symmetry, like, tied, faces)
+    inclined = _inclined(model, connections.symmetry, like, tied, faces)
     middles = constrain_middles(model, like, faces.whole)
-    constraints = Constraints(like, middles, tied, guides, faces)
+    constraints = Constraints(like, middles, tied, inclined, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
@@ -133,7 +133,7 @@ def make_parts(
         attached=attached,
         supports=supports,
         loads=loads,
-        guides=guides,
+        inclined=inclined,
         stabilisation=aid,
         sides=SidesKept(contacts, all_bodies(model)),
         assembly=assembly,
@@ -166,16 +166,16 @@ def _bulk(
     return LinearBulk(model, soft) if linear else NonlinearBulk(model, soft)
 
 
-def _guides(
+def _inclined(
     model: Model, symmetry: Sequence[str], like: Vec, tied: TiedFaces | None, faces: CoupledFaces
-) -> Guides:
+) -> InclinedSupports:
     """What holds nodes along directions of their own, which coupled faces have none of."""
     planes = SymmetryPlanes(model, symmetry, midside_nodes(model))
     sectors = None if tied is None else tied.sectors
-    guides = Guides(model, planes, like, midside_nodes(model), sectors)
-    on = [np.zeros(0, int), *(nodes for nodes, _ in guides.of_planes())]
+    inclined = InclinedSupports(model, planes, like, midside_nodes(model), sectors)
+    on = [np.zeros(0, int), *(nodes for nodes, _ in inclined.of_planes())]
     faces.check_planes(np.unique(np.concatenate(on)))
-    return guides
+    return inclined
 
 
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:

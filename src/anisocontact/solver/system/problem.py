@@ -108,7 +108,7 @@ class Problem(ComposedSystem, Uncopied):
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
-        self.supports, self.loads, self.guides = parts.supports, parts.loads, parts.guides
+        self.supports, self.loads, self.inclined = parts.supports, parts.loads, parts.inclined
         self.sides, self.stabilisation = parts.sides, parts.stabilisation
         self._aid = parts.stabilisation
         self.assembly = assembly = parts.assembly
@@ -179,7 +179,7 @@ class Problem(ComposedSystem, Uncopied):
             factor: The fraction, 0 to 1.
         """
         self.supports.stop()
-        self.guides.stop()
+        self.inclined.stop()
         self.assembly.terms.end_at(factor)
 
     def check(self, steps: Sequence[Step]) -> list[str]:
@@ -225,7 +225,7 @@ class Problem(ComposedSystem, Uncopied):
         self._bodies.forget()
         self.load_factor, self.dt = factor, dt
         self.supports.set_load_factor(factor)
-        self.guides.set_load_factor(factor)
+        self.inclined.set_load_factor(factor)
         self.assembly.terms.set_load_factor(factor, dt)
         self._stabilise()
 

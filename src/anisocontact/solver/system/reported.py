@@ -21,7 +21,7 @@ from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attachments import Attachments
-from anisocontact.solver.terms.guides import Guides
+from anisocontact.solver.terms.inclined_supports import InclinedSupports
 
 #: Energies that every run reports, in this order.
 ENERGIES = (
@@ -57,7 +57,7 @@ class ReportedSystem(AssembledSystem):
         assembly: Its terms.
         layout: Where the unknowns are.
         attached: Springs and elastic supports.
-        guides: Planes of symmetry and cylindrical supports.
+        inclined: Planes of symmetry and cylindrical supports.
         whole: Who answers for the bulk where every state is one of all unknowns.
         reduction: Who answers for it now.
     """
@@ -67,7 +67,7 @@ class ReportedSystem(AssembledSystem):
     assembly: Assembly
     layout: Layout
     attached: Attachments
-    guides: Guides
+    inclined: InclinedSupports
     whole: Whole
     reduction: Reduction
     _bodies: Configuration

@@ -16,7 +16,7 @@ from anisocontact.mesh.folded_cells import folded_cells
 from anisocontact.solver.system.lost_loads import check_lost_loads, supported_space, unsupported
 from anisocontact.solver.system.parts import ProblemParts
 from anisocontact.solver.terms.free_modes import Supported, SupportedFrame, along_axes
-from anisocontact.solver.terms.guides import Guides
+from anisocontact.solver.terms.inclined_supports import InclinedSupports
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.sector_contacts import halved_nodes
 from anisocontact.solver.terms.step import AXES, Step, check_load_curves
@@ -38,12 +38,12 @@ def begin_step(
     Raises:
         InputError: See `Supports.begin` and `DeadLoads.begin`.
     """
-    supports, guides = parts.supports, parts.guides
-    before, let_go = supports.unknowns, guides.released(reaction, step)
-    _, of_supports = guides.forces(reaction)
+    supports, inclined = parts.supports, parts.inclined
+    before, let_go = supports.unknowns, inclined.released(reaction, step)
+    _, of_supports = inclined.forces(reaction)
     supports.begin(step, start)
-    guides.begin(step, start, supports.unknowns, supports.end)
-    held = [*supports.supported(), *guides.supported()]
+    inclined.begin(step, start, supports.unknowns, supports.end)
+    held = [*supports.supported(), *inclined.supported()]
     gone = np.setdiff1d(before, supports.unknowns)
     let_go[gone] += of_supports[gone]
     released = np.zeros(len(start))
@@ -64,7 +64,7 @@ def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) 
     if parts.assembly.constraints.ties is not None:
         parts.assembly.constraints.ties.sectors.hold_cuts(fixed)
     fixed = with_ghosts(parts.model.space, fixed)
-    still = [*parts.supports.resting(), *parts.guides.resting()]
+    still = [*parts.supports.resting(), *parts.inclined.resting()]
     there = np.zeros((count, len(still)), dtype=bool)
     for i, (nodes, _) in enumerate(still):
         there[nodes, i] = True
@@ -81,20 +81,20 @@ def _begin_contacts(parts: ProblemParts, held: Sequence[Supported], count: int) 
 
 def _rehearsed(
     parts: ProblemParts, steps: Sequence[Step]
-) -> Iterator[tuple[Step, Supports, Guides, Loads]]:
-    """Supports, guides and loads of every step, begun without solving.
+) -> Iterator[tuple[Step, Supports, InclinedSupports, Loads]]:
+    """Supports, inclined ones and loads of every step, begun without solving.
 
     Unknowns that no support has prescribed stand at zero, the others where they have been led to.
     """
     model = parts.model
     supports, loads = Supports(model), Loads(model, parts.materials)
-    guides = parts.guides.fresh()
+    inclined = parts.inclined.fresh()
     u, nothing = np.zeros(model.positions.size), np.zeros(model.positions.size)
     for step in steps:
         supports.begin(step, u)
-        guides.take_over(step, nothing)
+        inclined.take_over(step, nothing)
         loads.begin(step, nothing)
-        yield step, supports, guides, loads
+        yield step, supports, inclined, loads
         u[supports.unknowns] = supports.end
 
 
@@ -105,27 +105,27 @@ def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
         What is doubtful, a line each.
 
     Raises:
-        InputError: See `check_load_curves`, `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
-            `check_lost_loads`.
+        InputError: See `check_load_curves`, `Supports.begin`, `DeadLoads.begin`,
+            `InclinedSupports.begin` and `check_lost_loads`.
     """
     turned, doubtful = False, check_load_curves(steps)
     known = np.ones(len(parts.model.positions), dtype=bool)  # nodes whose place is
-    for step, supports, guides, loads in _rehearsed(parts, steps):
+    for step, supports, inclined, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)
         _check_motions(parts, step)
         # Where a turn ends is not known before it has been, unless it is known where it begins.
         turned = turned or _turns_unknown(parts, step, known)
         for share in () if turned else supports.places:
             supports.set_load_factor(float(share))
-            guides.check(supports.unknowns, supports.values, step.name, float(share))
+            inclined.check(supports.unknowns, supports.values, step.name, float(share))
         if parts.rigid.faces:
-            all_prescribed = np.concatenate([supports.unknowns, guides.cylinders.unknowns])
+            all_prescribed = np.concatenate([supports.unknowns, inclined.cylinders.unknowns])
             parts.rigid.faces.check(all_prescribed, step.name)
-        held = [*supports.supported(), *guides.supported()]
+        held = [*supports.supported(), *inclined.supported()]
         if (ties := parts.assembly.constraints.ties) is not None:
             ties.check(held, _on_bodies(parts))
             ends = supports.unknowns, supports.end
-            ties.sectors.check_prescribed(*ends, guides.of_planes(), step.name)
+            ties.sectors.check_prescribed(*ends, inclined.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
         known[:] = False
         if step.until is None:
@@ -150,7 +150,7 @@ def _doubtful(parts: ProblemParts) -> list[str]:
     of_contacts = [nodes for contact in parts.contacts for nodes in contact.nodes_of_groups]
     links = [] if ties is None else ties.links
     tied = [parts.model.facet_nodes(group) for link in links for group in link]
-    directions = unmirrored(parts.contacts, parts.guides.of_planes())
+    directions = unmirrored(parts.contacts, parts.inclined.of_planes())
     cells = folded_cells(parts.model)
     return of_ties + bodies + cells + directions + unjoined_bodies(parts.model, of_contacts + tied)
 
@@ -204,8 +204,8 @@ def contact_must_hold(parts: ProblemParts, steps: Sequence[Step]) -> bool:
     found = False
     all_frames = parts.rigid.rehearsed(steps)
     rehearsed = _rehearsed(parts, steps)
-    for (step, supports, guides, loads), frames in zip(rehearsed, all_frames, strict=True):
-        held = [*supports.supported(), *guides.supported()]
+    for (step, supports, inclined, loads), frames in zip(rehearsed, all_frames, strict=True):
+        held = [*supports.supported(), *inclined.supported()]
         rest = np.zeros_like(parts.model.positions)
         load = loads.at_end(rest) if parts.attached else None
         all_supported = [*frames, *_cut_faces(parts)]

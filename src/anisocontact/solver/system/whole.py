@@ -109,7 +109,7 @@ class Whole:
 
     def _reactions(self, supporting: Floats) -> dict[str, Floats]:
         """What all supports carry, by facet group."""
-        across, rest = self._parts.guides.forces(supporting)
+        across, rest = self._parts.inclined.forces(supporting)
         sums = self._parts.supports.reactions(rest)
         for name, force in across.items():
             sums[name] = sums.get(name, 0.0) + force

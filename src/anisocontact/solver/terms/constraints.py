@@ -12,7 +12,7 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.faces import CoupledFaces
-from anisocontact.solver.terms.guides import Guides
+from anisocontact.solver.terms.inclined_supports import InclinedSupports
 from anisocontact.solver.terms.tied_faces import TiedFaces
 
 
@@ -23,7 +23,7 @@ class Constraints:
         like: A vector of the unknowns; those of the mesh come first.
         middles: Middle nodes that follow corners, if there are any.
         ties: Faces that are tied to others, if there are any.
-        guides: Symmetry planes and cylindrical supports, if there are any.
+        inclined: Symmetry planes and cylindrical supports, if there are any.
         faces: Faces that follow rigid bodies, if there are any.
     """
 
@@ -32,23 +32,23 @@ class Constraints:
         like: Vec,
         middles: Constraint | None = None,
         ties: TiedFaces | None = None,
-        guides: Guides | None = None,
+        inclined: InclinedSupports | None = None,
         faces: CoupledFaces | None = None,
     ) -> None:
-        self._like, self._middles, self._guides = like, middles, guides
+        self._like, self._middles, self._inclined = like, middles, inclined
         #: Faces that are tied to others; None if there are none.
         self.ties = ties
         self._faces = faces if faces else None
 
     def __bool__(self) -> bool:
         """Whether there are any beside faces that follow rigid bodies, before a step too."""
-        planes = self._guides is not None and bool(self._guides.groups)
+        planes = self._inclined is not None and bool(self._inclined.groups)
         return planes or self.ties is not None or self._middles is not None
 
     @property
     def holding(self) -> Ints:
-        """Unknowns of this rank that guides and faces have follow others, local numbers."""
-        found = [] if self._guides is None else [self._guides.slaves]
+        """Unknowns of this rank that inclined supports and faces let follow others, local."""
+        found = [] if self._inclined is None else [self._inclined.slaves]
         found += [] if self._faces is None else [self._faces.dependents]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
@@ -131,8 +131,8 @@ class Constraints:
         return columns
 
     def _all(self) -> list[Constraint]:
-        guides = self._guides.constraint if self._guides else None
-        return self._between_nodes() + ([] if guides is None else [guides])
+        inclined = self._inclined.constraint if self._inclined else None
+        return self._between_nodes() + ([] if inclined is None else [inclined])
 
     def _between_nodes(self) -> list[Constraint]:
         found = (self._middles, None if self.ties is None else self.ties.constraint)

@@ -1,4 +1,4 @@
-"""Cylindrical supports along the steps, and what guides of nodes have in common."""
+"""Cylindrical supports along the steps, and what inclined supports have in common."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ACROSS = "across"
 
 
 @dataclass(frozen=True)
-class Guide:
+class InclinedSupport:
     """Nodes of a group whose displacement along directions is known.
 
     Attributes:
@@ -72,32 +72,34 @@ class Cylinders:
         self._model, self._tied, self._sectors = model, tied, sectors
         self._systems: dict[str, Cylindrical] = {}
         self._histories: dict[_Key, TimeHistory] = {}
-        self._guides: list[Guide] = []
+        self._supports: list[InclinedSupport] = []
 
     @property
     def unknowns(self) -> Ints:
         """Local numbers of all unknowns of nodes with prescribed displacements."""
-        nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in self._guides)]))
+        nodes = np.unique(
+            np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in self._supports)])
+        )
         return (3 * nodes[:, None] + np.arange(3)).reshape(-1)
 
     def resting(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held where they are along one direction; collective."""
         comm = self._model.mesh.comm
         found: list[tuple[Ints, Floats]] = []
-        for guide in self._guides:
-            if not self._histories[guide.group, guide.component].linear:
+        for support in self._supports:
+            if not self._histories[support.group, support.component].linear:
                 continue
-            e, moved = guide.directions, np.abs(guide.at(1.0) - guide.at(0.0))
+            e, moved = support.directions, np.abs(support.at(1.0) - support.at(0.0))
             local = [e.max(axis=0, initial=-2.0), -e.min(axis=0, initial=2.0)]
             local.append(np.full(3, moved.max(initial=0.0)))
             ends = np.max(comm.allgather(local), axis=0)
             if np.all(ends[0] + ends[1] <= NO_SHARE) and not ends[2].any():
-                found.append((guide.nodes, 0.5 * (ends[0] - ends[1])))
+                found.append((support.nodes, 0.5 * (ends[0] - ends[1])))
         return found
 
-    def guides(self) -> list[Guide]:
+    def supports(self) -> list[InclinedSupport]:
         """Those of the step that has begun."""
-        return self._guides
+        return self._supports
 
     def begin(self, step: Step, u: Floats) -> None:
         """Take over a step.
@@ -120,19 +122,19 @@ class Cylinders:
                 self._histories.pop((group, name), None)
                 if value is not None:
                     self._histories[group, name] = history_of(value)
-        self._guides = [self._guide(step, *key, one, u) for key, one in self._histories.items()]
+        self._supports = [self._support(step, *key, one, u) for key, one in self._histories.items()]
 
     def stop(self) -> None:
         """The step ends where it is: prescribed values stay there."""
         self._histories = dict.fromkeys(self._histories, Held())
 
-    def lets_go(self, guide: Guide, step: Step) -> bool:
-        """Whether a step that has not begun yet ends a guide of these."""
-        key = guide.group, guide.component
+    def lets_go(self, support: InclinedSupport, step: Step) -> bool:
+        """Whether a step that has not begun yet ends a support of these."""
+        key = support.group, support.component
         if key not in self._histories:
             return False
-        given = step.cylindrical.get(guide.group)
-        freed = given is not None and given.values.get(guide.component, 0.0) is None
+        given = step.cylindrical.get(support.group)
+        freed = given is not None and given.values.get(support.component, 0.0) is None
         return freed or self._taken(key, step)
 
     def _taken(self, key: _Key, step: Step) -> bool:
@@ -142,7 +144,9 @@ class Cylinders:
         other = given is not None and given.system != self._systems[group].system
         return other or group in step.displacement or group in step.rotation
 
-    def _guide(self, step: Step, group: str, name: str, history: TimeHistory, u: Floats) -> Guide:
+    def _support(
+        self, step: Step, group: str, name: str, history: TimeHistory, u: Floats
+    ) -> InclinedSupport:
         field = f"step {step.name!r}.cylindrical"
         nodes = np.setdiff1d(self._model.nodes(group, field).astype(np.int64), self._tied)
         if self._sectors is not None:
@@ -163,4 +167,4 @@ class Cylinders:
         def at(share: float) -> Floats:
             return np.asarray(history.at(share, step.duration, start))
 
-        return Guide(group, name, "cylindrical", nodes, directions, at)
+        return InclinedSupport(group, name, "cylindrical", nodes, directions, at)

@@ -11,7 +11,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.cylinders import Guide
+from anisocontact.solver.terms.cylinders import InclinedSupport
 from anisocontact.solver.terms.pressure import outward
 
 #: Largest difference of normals of a plane; roundings of mesh files are well below.
@@ -37,19 +37,21 @@ class SymmetryPlanes:
 
     def __init__(self, model: Model, groups: Sequence[str], tied: Ints) -> None:
         self.groups = list(groups)
-        self._guides = [_guide(model, group, tied) for group in groups]
+        self._supports = [_support(model, group, tied) for group in groups]
 
-    def guides(self) -> list[Guide]:
+    def supports(self) -> list[InclinedSupport]:
         """Nodes of each plane, held along its normal."""
-        return self._guides
+        return self._supports
 
 
-def _guide(model: Model, group: str, tied: Ints) -> Guide:
+def _support(model: Model, group: str, tied: Ints) -> InclinedSupport:
     normal = _normal(model, group)
     owned, dim = model.space.dofmap.index_map.size_local, model.idealisation.dim - 1
     nodes = fem.locate_dofs_topological(model.space, dim, model.facets(group)).astype(np.int64)
     nodes = np.setdiff1d(nodes[nodes < owned], tied)
-    return Guide(group, "normal", "displacement", nodes, normal, lambda share: np.zeros(len(nodes)))
+    return InclinedSupport(
+        group, "normal", "displacement", nodes, normal, lambda share: np.zeros(len(nodes))
+    )
 
 
 def _normal(model: Model, group: str) -> Floats:

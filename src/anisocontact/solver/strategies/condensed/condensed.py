@@ -239,10 +239,10 @@ class Condensed:
     def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """As of `Reduction`."""
         whole = self._problem.whole
-        if self._problem.guides and x is not None:  # their forces need all displacements on them
+        if self._problem.inclined and x is not None:  # their forces need all displacements on them
             u = self.displacement(x)
             return whole.reactions_at(u, self.system.raw_forces, self._trial_load)
-        if self._problem.guides:
+        if self._problem.inclined:
             self.recover()
         if x is None and not self._stale:  # of supports, too, that have begun since
             return whole.reactions()
@@ -353,7 +353,7 @@ class Condensed:
 
     def _reusable(self) -> Condensation | None:
         """The condensation so far where parts of it are good still; constraints change the bulk."""
-        changes = bool(self._problem.guides) or self._problem.constraints.ties is not None
+        changes = bool(self._problem.inclined) or self._problem.constraints.ties is not None
         if not changes or self._bulk is None:
             return self._bulk
         self._bulk.close()

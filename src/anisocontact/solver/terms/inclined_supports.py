@@ -1,4 +1,4 @@
-"""Supports along directions that are no axes: planes and cylinders."""
+"""Inclined supports (skew boundary conditions): planes and cylinders along no axes of space."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
-from anisocontact.solver.terms.cylinders import ACROSS, Cylinders, Guide
+from anisocontact.solver.terms.cylinders import ACROSS, Cylinders, InclinedSupport
 from anisocontact.solver.terms.elimination import Elimination, eliminated
 from anisocontact.solver.terms.sectors import Sectors
 from anisocontact.solver.terms.step import Step
@@ -29,20 +29,20 @@ class _NodalConditions:
     Attributes:
         nodes: The nodes, (m,).
         directions: Their unit vectors, zero where a node has fewer than R, (m, R, 3).
-        guides: Number of the guide of each, -1 where there is none, (m, R).
-        places: Place of the node in that guide, (m, R).
+        supports: Number of the support of each, -1 where there is none, (m, R).
+        places: Place of the node in that support, (m, R).
     """
 
     nodes: Ints
     directions: Floats
-    guides: Ints
+    supports: Ints
     places: Ints
 
     @classmethod
-    def of(cls, guides: Sequence[Guide]) -> _NodalConditions:
-        """Those of some guides."""
-        nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in guides)]))
-        at = [np.searchsorted(nodes, guide.nodes) for guide in guides]
+    def of(cls, supports: Sequence[InclinedSupport]) -> _NodalConditions:
+        """Those of some supports."""
+        nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in supports)]))
+        at = [np.searchsorted(nodes, support.nodes) for support in supports]
         count = np.zeros(len(nodes), dtype=np.int64)
         for here in at:
             count[here] += 1
@@ -50,23 +50,23 @@ class _NodalConditions:
         directions = np.zeros((*shape, 3))
         which, places = np.full(shape, -1), np.zeros(shape, dtype=np.int64)
         count[:] = 0
-        for i, (guide, here) in enumerate(zip(guides, at, strict=True)):
-            directions[here, count[here]] = guide.directions
+        for i, (support, here) in enumerate(zip(supports, at, strict=True)):
+            directions[here, count[here]] = support.directions
             which[here, count[here]] = i
             places[here, count[here]] = np.arange(len(here))
             count[here] += 1
         return cls(nodes, directions, which, places)
 
-    def values(self, guides: Sequence[Guide], share: float) -> Floats:
+    def values(self, supports: Sequence[InclinedSupport], share: float) -> Floats:
         """The g at a share of the step, (m, R), length."""
-        out = np.zeros(self.guides.shape)
-        for i, guide in enumerate(guides):
-            there = self.guides == i
-            out[there] = guide.at(share)[self.places[there]]
+        out = np.zeros(self.supports.shape)
+        for i, support in enumerate(supports):
+            there = self.supports == i
+            out[there] = support.at(share)[self.places[there]]
         return out
 
 
-class Guides:
+class InclinedSupports:
     """Conditions `e . u = g` at nodes, with directions e that are no axes of space.
 
     Symmetry planes hold all along the run, g = 0; steps prescribe g of cylindrical supports. At a
@@ -112,24 +112,24 @@ class Guides:
         return self._cylinders
 
     def __bool__(self) -> bool:
-        return bool(self._guides)
+        return bool(self._supports)
 
-    def fresh(self) -> Guides:
+    def fresh(self) -> InclinedSupports:
         """The same before the first step, to go through the steps without solving."""
-        return Guides(self._model, self._planes, self._like, self._tied, self._sectors)
+        return InclinedSupports(self._model, self._planes, self._like, self._tied, self._sectors)
 
     def supported(self) -> list[tuple[Ints, Floats]]:
         """Nodes this rank owns that have a support, and the directions, (3,) or (nodes, 3)."""
-        return [(guide.nodes, guide.direction) for guide in self._guides]
+        return [(support.nodes, support.direction) for support in self._supports]
 
     def of_planes(self) -> list[tuple[Ints, Floats]]:
         """Nodes this rank owns on each symmetry plane, and its normal, (3,)."""
-        planes = [guide for guide in self._still if guide.component != ACROSS]
-        return [(guide.nodes, guide.direction) for guide in planes]
+        planes = [support for support in self._still if support.component != ACROSS]
+        return [(support.nodes, support.direction) for support in planes]
 
     def resting(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held where they are all along the step, and the direction, (3,)."""
-        still = [(guide.nodes, guide.direction) for guide in self._still]
+        still = [(support.nodes, support.direction) for support in self._still]
         return still + self._cylinders.resting()
 
     def begin(self, step: Step, u: Floats, prescribed: Ints, values: Floats) -> None:
@@ -152,7 +152,7 @@ class Guides:
     def take_over(self, step: Step, u: Floats) -> None:
         """Take over what a step prescribes, without constraints."""
         self._cylinders.begin(step, u)
-        self._take(self._still + self._cylinders.guides())
+        self._take(self._still + self._cylinders.supports())
 
     def stop(self) -> None:
         """The step ends where it is: prescribed values stay there."""
@@ -162,7 +162,7 @@ class Guides:
         """Go to a fraction of the step."""
         if self.constraint is None:
             return
-        values = self._rows.values(self._guides, factor)
+        values = self._rows.values(self._supports, factor)
         offsets = np.einsum("msr,mr->ms", self._found.gain, values)
         offset = np.zeros(self._like.getLocalSize())
         node, component = np.nonzero(self._found.slave)
@@ -186,13 +186,15 @@ class Guides:
         supported[prescribed], ends[prescribed] = True, values
         rows = self._rows
         found = eliminated(rows.directions, supported.reshape(-1, 3)[rows.nodes])
-        given = rows.values(self._guides, share)
+        given = rows.values(self._supports, share)
         largest = max(np.abs(ends).max(initial=0.0), np.abs(given).max(initial=0.0))
         off = np.abs(found.left(ends.reshape(-1, 3)[rows.nodes], given))
         if np.any(off > OUT * largest):
             node, row = np.unravel_index(int(np.argmax(off)), off.shape)
-            guide = self._guides[rows.guides[node, row]]
-            raise InputError(guide.contradicted(float(off.max())), f"step {step!r}.{guide.kind}")
+            support = self._supports[rows.supports[node, row]]
+            raise InputError(
+                support.contradicted(float(off.max())), f"step {step!r}.{support.kind}"
+            )
         return found
 
     def forces(self, supporting: Floats) -> tuple[dict[str, Floats], Floats]:
@@ -206,16 +208,16 @@ class Guides:
         """
         rest, rows = supporting.copy(), self._rows
         nodal = rest.reshape(-1, 3)
-        own = [guide for guide in self._guides if guide.component != ACROSS]
-        names = list(dict.fromkeys(guide.group for guide in own))
+        own = [support for support in self._supports if support.component != ACROSS]
+        names = list(dict.fromkeys(support.group for support in own))
         sums = np.zeros((len(names), 3))
         if self.constraint is not None:
             of_rows = self._of_rows(nodal)
             nodal[rows.nodes] -= of_rows.sum(axis=1)
-            for i, guide in enumerate(self._guides):
-                if guide.component == ACROSS:  # not of one sector alone
+            for i, support in enumerate(self._supports):
+                if support.component == ACROSS:  # not of one sector alone
                     continue
-                sums[names.index(guide.group)] += of_rows[rows.guides == i].sum(axis=0)
+                sums[names.index(support.group)] += of_rows[rows.supports == i].sum(axis=0)
         total = self._model.mesh.comm.allreduce(sums)
         return dict(zip(names, total, strict=True)), rest
 
@@ -227,11 +229,11 @@ class Guides:
             step: The step, not begun yet.
         """
         out = np.zeros_like(supporting)
-        gone = [self._cylinders.lets_go(guide, step) for guide in self._guides]
+        gone = [self._cylinders.lets_go(support, step) for support in self._supports]
         if self.constraint is not None and any(gone):
             of_rows = self._of_rows(supporting.reshape(-1, 3))
             for i in np.flatnonzero(gone):
-                node, row = np.nonzero(self._rows.guides == i)
+                node, row = np.nonzero(self._rows.supports == i)
                 out.reshape(-1, 3)[self._rows.nodes[node]] += of_rows[node, row]
         return out
 
@@ -240,12 +242,12 @@ class Guides:
         along = np.einsum("mri,mi->mr", self._found.share, nodal[self._rows.nodes])
         return np.asarray(along[..., None] * self._rows.directions)
 
-    def _of_run(self) -> list[Guide]:
+    def _of_run(self) -> list[InclinedSupport]:
         """Symmetry planes, and what keeps nodes on the axes of sectors."""
         if self._sectors is None:
-            return self._planes.guides()
+            return self._planes.supports()
         found = []
-        for plane in self._planes.guides():
+        for plane in self._planes.supports():
             off = self._sectors.off_planes(plane.group, plane.nodes, plane.direction)
             nodes = np.setdiff1d(plane.nodes, off)
             found.append(_still(plane.group, plane.component, nodes, plane.direction))
@@ -254,9 +256,9 @@ class Guides:
             found += [_still(f"the axis of {name}", ACROSS, nodes, one) for one in across]
         return found
 
-    def _take(self, guides: Sequence[Guide]) -> None:
-        self._guides = list(guides)
-        self._rows = _NodalConditions.of(self._guides)
+    def _take(self, supports: Sequence[InclinedSupport]) -> None:
+        self._supports = list(supports)
+        self._rows = _NodalConditions.of(self._supports)
 
     def _build(self, found: Elimination) -> None:
         node, slave, component = np.nonzero(
@@ -279,7 +281,9 @@ class Guides:
         )
 
 
-def _still(group: str, component: str, nodes: Ints, direction: Floats) -> Guide:
+def _still(group: str, component: str, nodes: Ints, direction: Floats) -> InclinedSupport:
     """Nodes that stay where they are along a direction."""
     count = len(nodes)
-    return Guide(group, component, "displacement", nodes, direction, lambda share: np.zeros(count))
+    return InclinedSupport(
+        group, component, "displacement", nodes, direction, lambda share: np.zeros(count)
+    )
