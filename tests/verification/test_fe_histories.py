@@ -24,6 +24,7 @@ from anisocontact.solver import Problem, Solver, Step
 
 #: Sides of a bar that is pulled along z and free to contract.
 HELD = {"bar.bottom": {"z": 0.0}, "bar.left": {"x": 0.0}, "bar.front": {"y": 0.0}}
+SIDES = ("left", "front", "bottom")
 POLYMER = {"E": 3.0, "nu": 0.3, "g": [0.3, 0.2], "tau": [0.5, 4.0], "k": [0.3, 0.2]}
 
 
@@ -315,6 +316,26 @@ def test_two_processes(tmp_path: Path, material: str) -> None:
         subprocess.run(command, check=True, capture_output=True)
         found.append(_forces(out))
     np.testing.assert_allclose(found[0], found[1], atol=1e-7 * np.abs(found[0]).max())
+
+
+def test_what_each_body_has_dissipated() -> None:
+    """Of bars that are pulled by 1 and 2 %, without contact between them.
+
+    Source: what each dissipates alone, four times as much where it is pulled twice as far; the sum
+    is that of all. Tolerance: that of Newton's method.
+    """
+    names = ("bar", "other")
+    model = build_box(
+        {n: BoxSpec((0, 3 * i, 0), (1, 1, 1), (2, 1, 1)) for i, n in enumerate(names)}
+    )
+    problem = Problem(model, dict.fromkeys(names, make_material("viscoelastic", **POLYMER)))
+    held = {f"other.{side}": {axis: 0.0} for side, axis in zip(SIDES, "xyz", strict=True)}
+    ends = {"bar.top": {"z": 0.01}, "other.top": {"z": 0.02}}
+    (*_, last) = Solver(problem, [Step("pull", 2, {**HELD, **held, **ends})]).run()
+    alone = _pull(_bar("viscoelastic", POLYMER), [(0.01, 2)])[1][-1]["inelastic"]
+    found = problem.bulk.dissipated_by_body()
+    assert found == pytest.approx({"bar": alone, "other": 4.0 * alone}, rel=1e-8)
+    assert last.energies["inelastic"] == pytest.approx(5.0 * alone, rel=1e-8)
 
 
 def test_a_process_without_a_cell_of_a_body_keeps_nothing() -> None:

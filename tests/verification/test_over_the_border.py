@@ -124,6 +124,28 @@ def test_points_that_come_down_as_well(mortar: bool, order: int) -> None:
 
 
 @WAYS
+def test_a_layer_behind_adhesion_leaves_out_points_that_come(mortar: bool) -> None:
+    """They have no slip in that attempt, and all of it in the next one.
+
+    Requirement: a layer shifts points that stick, and none where no master was.
+    """
+    contact, moved = _beside_a_plate((1e3, 1e3), mortar=mortar, order=2)
+    sunk, way = (0.0, 0.0, -0.01), (0.3, -0.1, -0.01)
+    contact.update(moved(sunk), 1.0)
+    contact.commit()
+    usual = contact.update(moved(way), 1.0).traction_t
+    contact.trials.lay(1e-3, 1.0)
+    layered = contact.update(moved(way), 1.0)
+    touching = layered.status > 0
+    assert touching.any()
+    assert not layered.traction_t[touching].any()
+    contact.trials.take_away()
+    contact.roll_back()
+    assert np.array_equal(contact.update(moved(way), 1.0).traction_t, usual)
+    assert usual[touching, :2].all()
+
+
+@WAYS
 @ORDERS
 def test_tangent_of_points_that_come(mortar: bool, order: int) -> None:
     """The tangent where points have come over the border, of which some stick and some slide.

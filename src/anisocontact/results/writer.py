@@ -19,14 +19,7 @@ from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint_times import Checkpoints
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
-from anisocontact.results.files import (
-    FAILED,
-    Disk,
-    WriteError,
-    clear,
-    clear_drafts,
-    write_text,
-)
+from anisocontact.results.files import FAILED, Disk, WriteError, clear, clear_drafts, write_text
 from anisocontact.results.history import HistoryTable
 from anisocontact.results.master_patches import MasterPatches
 from anisocontact.results.no_energy import energies_by_name, finite
