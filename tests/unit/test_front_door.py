@@ -52,7 +52,8 @@ def test_names_of_before(package: str, before: str, today: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("before", "today"), [("inner_forces", "internal_forces"), ("flowed", "regularised")]
+    ("before", "today"),
+    [("inner_forces", "internal_forces"), ("flowed", "regularised"), ("guides", "inclined")],
 )
 def test_attributes_of_before(before: str, today: str) -> None:
     """As names: a problem has them by both, the one of before warns in the line of the script."""

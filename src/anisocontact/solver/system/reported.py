@@ -62,6 +62,7 @@ class ReportedSystem(AssembledSystem):
         reduction: Who answers for it now.
     """
 
+    guides = RenamedAttribute("inclined")
     inner_forces = RenamedAttribute("internal_forces")
 
     assembly: Assembly
