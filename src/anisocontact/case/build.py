@@ -68,6 +68,7 @@ class Built:
         steps: Load steps.
         solver: Runs the steps.
         adjusted: What ties have moved in the mesh, a line each.
+        torn: Bodies that end where the mesh of their file goes on, a line each.
     """
 
     file: CaseFile
@@ -75,6 +76,7 @@ class Built:
     steps: list[Step]
     solver: Solver
     adjusted: Sequence[str] = ()
+    torn: Sequence[str] = ()
 
     def doubts(self) -> list[str]:
         """What is hardly meant: numbers in the units of the case, times; collective."""
@@ -88,7 +90,7 @@ class Built:
         low = np.min(self.problem.comm.allgather(low), axis=0)
         high = np.max(self.problem.comm.allgather(high), axis=0)
         found = doubts(case.units, young, densities, float((high - low).max()))
-        found += [*_untimed(case), *idle_amplitudes(case), *cut_paths(case)]
+        found += [*self.torn, *_untimed(case), *idle_amplitudes(case), *cut_paths(case)]
         found += _at_points(case, self.problem)
         return found + [
             f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'
@@ -133,8 +135,9 @@ def build(file: CaseFile, python: bool = True) -> Built:
         law_of(section, file.resolve, f"contact[{i}]", python)
         for i, section in enumerate(case.contact)
     ]
+    arrays = arrays_of(file, MPI.COMM_WORLD)
     model = Model.from_arrays(
-        arrays_of(file, MPI.COMM_WORLD),
+        arrays,
         idealisation=objects.idealisation(case),
         touching=[section.slave for section in case.contact],
     )
@@ -163,7 +166,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
             cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
         )
     _check_output(case, problem, steps)
-    return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
+    return Built(file, problem, steps, _solver(case, problem, steps), adjusted, arrays.torn)
 
 
 def _contacts(

@@ -56,6 +56,8 @@ def _is_mesh(path: Path) -> bool:
     mesh = file_arrays(path, field="")
     for line in described(mesh):
         say(line)
+    for line in mesh.torn:
+        say(f"warning   {line}")
     if path.suffix.lower() == ".inp":
         for line in deck_supports(path, list(dict.fromkeys([*mesh.facets, *mesh.nodes]))):
             say(f"support   {line}")

@@ -54,6 +54,7 @@ class MeshArrays:
         nodes: Points and edges: "body.group" -> places of their nodes, all on every process,
             (nodes, 3), length.
         notes: What a reader has made of the mesh of a file, a line each.
+        torn: Bodies that end where the mesh of their file goes on, a line each.
         comm: Processes that share the mesh; properties and functions of it are collective.
     """
 
@@ -67,6 +68,7 @@ class MeshArrays:
     linear: tuple[str, ...] = ()
     nodes: dict[str, Floats] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    torn: tuple[str, ...] = ()
     comm: Any = field(default_factory=lambda: MPI.COMM_SELF)
 
     @property

@@ -24,6 +24,7 @@ from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.selectors import Selector, with_groups
 from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
 from anisocontact.mesh.shapes.shape import FACE, FLAT
+from anisocontact.mesh.torn import tell_torn
 
 
 class Source(Protocol):
@@ -185,6 +186,7 @@ def build_mesh(
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
     mesh = with_joined(with_groups(merge(parts), groups), joined)
+    tell_torn(mesh.torn)
     return Model.from_arrays(mesh, idealisation=idealisation, touching=touching)
 
 

@@ -25,6 +25,7 @@ from anisocontact.mesh.msh import ElementBlock, MshFile, read_msh
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.split import Route, Split, arranged
 from anisocontact.mesh.stream import MshError
+from anisocontact.mesh.torn import tell_torn, torn
 from anisocontact.mesh.whole import WholeMesh
 
 # gmsh element type -> cell, degree
@@ -95,6 +96,7 @@ def read_gmsh(
         anisocontact.base.errors.InputError: mesh.file: mesh file 'no-such-file.msh' does not exist
     """
     arrays = gmsh_arrays(Path(path), bodies, comm=MPI.COMM_WORLD)
+    tell_torn(arrays.torn)
     return Model.from_arrays(arrays, idealisation=idealisation)
 
 
@@ -156,7 +158,11 @@ def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> 
     compact = np.where(used, kept.first + np.cumsum(used) - 1, -1)
     cells = known.fetch(compact, cells)
     places = {name: np.flatnonzero(labels == i) for i, name in enumerate(names)}
-    mesh = MeshArrays(cell, degree, msh.points[used], cells, places, {}, degree, comm=comm)
+    mesh = MeshArrays(
+        *(cell, degree, msh.points[used], cells, places, {}, degree),
+        torn=_torn(msh, dim, volumes, used, known, comm),
+        comm=comm,
+    )
     check_cells(mesh)
     surfaces: dict[str, list[Ints]] = {}
     for name, block in _named(msh, dim - 1):
@@ -189,6 +195,24 @@ def _made_over(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> MeshArra
         before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
         mesh.node_sets[name] = np.union1d(before, block.nodes)
     return mesh.arrays(bodies)
+
+
+def _torn(
+    msh: MshFile,
+    dim: int,
+    taken: Sequence[tuple[str, ElementBlock]],
+    used: Flags,
+    nodes: Split,
+    comm: Any,
+) -> tuple[str, ...]:
+    """Lines on bodies that share nodes with cells that are left out; collective."""
+    others = [b for b in msh.blocks if b.dim == dim and all(b is not one for _, one in taken)]
+    none = np.zeros(0, dtype=np.int64)
+    left = nodes.marked(np.concatenate([none, *(block.nodes.ravel() for block in others)]))
+    common = comm.allreduce(int((used & left).sum()))
+    names = {name for name, block in _named(msh, dim) if any(block is one for one in others)}
+    bodies = list(dict.fromkeys(name for name, _ in taken))
+    return torn(bodies, common, sorted(set().union(*comm.allgather(names))))
 
 
 def _points_and_edges(mesh: MeshArrays, groups: dict[str, list[Ints]]) -> dict[str, Floats]:

@@ -79,6 +79,7 @@ def _joined(parts: Sequence[MeshArrays]) -> MeshArrays:
         },
         nodes={name: places for part in parts for name, places in part.nodes.items()},
         notes=tuple(note for part in parts for note in part.notes),
+        torn=tuple(line for part in parts for line in part.torn),
     )
 
 

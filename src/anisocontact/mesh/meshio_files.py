@@ -15,6 +15,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.mesh import exodus
 from anisocontact.mesh.exodus import read_exodus
 from anisocontact.mesh.meshio_patches import names_of_med, nastran
+from anisocontact.mesh.torn import without_body
 from anisocontact.mesh.whole import WholeMesh
 
 #: Endings of names; gmsh's and Abaqus's have readers of their own.
@@ -102,6 +103,7 @@ def read_by_meshio(path: Path) -> WholeMesh:
         raise InputError(text)
     if all(set(labels) == {"body"} for labels in mesh.bodies):
         mesh.notes = (*mesh.notes, *_unread(given, solids))
+    mesh.notes = (*mesh.notes, *without_body(mesh.bodies))
     for name, held in (*given.point_sets.items(), *_of_families(given)):
         before = mesh.node_sets.get(_plain(name), np.zeros(0, dtype=np.int64))
         nodes = np.asarray(held, dtype=np.int64).ravel()

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.mesh.torn import without_body
 from anisocontact.mesh.whole import WholeMesh
 
 #: Element -> cell, and where the nodes in the order of VTK stand: universal files go round a face
@@ -157,6 +158,7 @@ def _whole_mesh(content: _Content) -> WholeMesh:
         nodes = np.array([rows[n] for w, n in members if w == _NODE and n in rows], dtype=np.int64)
         if len(nodes):
             mesh.node_sets[_plain(name)] = np.unique(nodes)
+    mesh.notes = tuple(without_body(mesh.bodies))
     return mesh
 
 

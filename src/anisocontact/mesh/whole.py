@@ -30,6 +30,7 @@ from anisocontact.mesh.merge import merge
 from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, triangles
+from anisocontact.mesh.torn import torn_cells
 
 #: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
 CORNERS = {
@@ -56,6 +57,7 @@ class WholeMesh:
             array (facets, 2) for each in `surfaces`; face 0 where it means all that are free.
         left_out: Elements that are no solids -> how many there are.
         notes: What was made of the mesh, a line each.
+        torn: Bodies that end where the mesh goes on, a line each.
 
     Example:
         >>> mesh = WholeMesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]))
@@ -72,6 +74,7 @@ class WholeMesh:
     named: dict[str, list[Ints]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    torn: tuple[str, ...] = ()
 
     def add_cells(self, cell: str, nodes: Ints, bodies: Sequence[str]) -> None:
         """Add elements of one kind with the body of each.
@@ -122,6 +125,7 @@ class WholeMesh:
             raise InputError("no element is in a body")
         check_nodes(joined, self.points)
         check_single(joined)
+        self.torn = (*self.torn, *torn_cells(self.cells, self.bodies, wanted))
         told = self._told_inside(joined)
         self.notes = (*self.notes, *told.values())
         wrong = 0
@@ -140,7 +144,7 @@ class WholeMesh:
         check_apart(joined)
         check_degenerate(joined)
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
-        return replace(mesh, notes=self.notes)
+        return replace(mesh, notes=self.notes, torn=self.torn)
 
     def _told_inside(self, kinds: Mapping[Kind, Elements]) -> dict[str, str]:
         """Surfaces inside the mesh and what to say of them, before cells are cut."""
@@ -190,6 +194,7 @@ class WholeMesh:
         }
         count = sum(len(nodes) for _, nodes in cut.cells)
         cut.notes = (*self.notes, f"{said} are cut into {count} tetrahedra")
+        cut.torn = self.torn
         return cut
 
     def _of_kind(self, cell: str, nodes: Ints, labels: Sequence[str]) -> MeshArrays:
@@ -243,7 +248,7 @@ def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
     said = in_words(kinds)
     if any(n > 4 or (cell == "triangle" and n > 3) for cell, n in kinds):
         raise InputError(f"{said}: a mesh in the plane of order 2 needs cells of one kind")
-    cut = WholeMesh(mesh.points, node_sets=mesh.node_sets, surfaces=mesh.surfaces)
+    cut = WholeMesh(mesh.points, node_sets=mesh.node_sets, surfaces=mesh.surfaces, torn=mesh.torn)
     for (cell, _), (nodes, labels) in kinds.items():
         if cell == "triangle":
             cut.add_cells(cell, nodes, labels)
