@@ -57,6 +57,8 @@ def test_stress_that_is_another():
 @pytest.mark.parametrize(
     ("units", "young", "densities", "size", "count"),
     [
+        ({"length": "mm", "force": "kN", "time": "ms"}, 210.0, [7.85e-6], 100.0, 0),  # kg, GPa
+        ({"length": "mm", "force": "kN"}, 210.0, [7.85e-6], 100.0, 1),
         ({"length": "mm", "force": "N"}, 210e3, [7.85e-9], 100.0, 0),
         ({"length": "mm", "force": "N"}, 210e9, [7.85e-9], 100.0, 1),
         ({"length": "mm", "force": "N"}, 210e3, [7850.0], 100.0, 1),
@@ -74,6 +76,49 @@ def test_numbers_that_no_body_has(units, young, densities, size, count):
     found = doubts(Units(**units), {"bar": young}, densities, size)
     assert len(found) == count
     assert all("\n" not in line for line in found)
+
+
+@pytest.mark.parametrize(
+    ("units", "young", "density", "gravity", "said"),
+    [
+        ({"length": "mm", "force": "N"}, 210e3, 7.85e-9, 9810.0, None),
+        ({"length": "mm", "force": "N"}, 210e3, 7.85e-9, 9.81, "gravity is 0.00981 m/s^2"),
+        ({"length": "m", "force": "N"}, 210e9, 7850.0, 9810.0, "gravity is 9.81e+03 m/s^2"),
+        ({"length": "mm", "force": "kN", "time": "ms"}, 210.0, 7.85e-6, 9.81e-3, None),
+        ({"length": "mm", "force": "kN", "time": "ms"}, 210.0, 7.85e-6, 9.81, "mm, kN and ms"),
+        ({}, 210e3, 7.85e-9, 9810.0, None),
+        ({}, 210e3, 7.85e-9, 1e-3, "densities, gravity and the size of the bodies do not fit"),
+    ],
+)
+def test_gravity_of_other_units(units, young, density, gravity, said):
+    """Requirement: 9.81 beside lengths in mm and seconds is a slip of a thousand, and is told."""
+    found = doubts(Units(**units), {"bar": young}, [density], 100.0, [gravity])
+    assert len(found) == (said is not None)
+    assert not said or said in found[0]
+
+
+@pytest.mark.parametrize(
+    "weight",
+    [
+        "gravity = { z = -9.81 }",
+        "body_force = { bar = { z = -9.81, density = 7.85e-9 } }",
+        'gravity = { z = { amplitude = "on", value = -9.81 } }',
+    ],
+)
+def test_gravity_of_a_case(tmp_path, capsys, weight):
+    """Requirement: `check` says so of gravity and of body forces that have a density; of gravity
+    that a step takes away it says nothing."""
+    text = CASE.format(units='[units]\nlength = "mm"\nforce = "N"', young="210e3", density="1")
+    head, _, _ = text.partition("body_force")
+    head = head.replace("nu = 0.3", "nu = 0.3\ndensity = 7.85e-9")
+    amplitude = '[amplitude.on]\nkind = "ramp"\nend = 1\n'
+    (tmp_path / "case.toml").write_text(head + weight + "\n" + amplitude * ("on" in weight))
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
+    assert "units: gravity is 0.00981 m/s^2 in mm and N" in capsys.readouterr().out
+    off = head + "gravity = { z = -9810 }\n[[step]]\nname = 'off'\nincrements = 1\n"
+    (tmp_path / "off.toml").write_text(off + "gravity = { z = 0 }\n")
+    assert main(["check", str(tmp_path / "off.toml")]) == 0
+    assert "units:" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from anisocontact.case.contacts import contact
 from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.load_curves import CaseLoadCurves, cut_paths, idle_amplitudes
+from anisocontact.case.loads import BodyForce, Gravity, accelerations
 from anisocontact.case.material_file import material_of
 from anisocontact.case.mesh import arrays_of, name_nodes
 from anisocontact.case.model import MORTAR, Case
@@ -83,13 +84,17 @@ class Built:
         case, model = self.file.case, self.problem.model
         young = {name: material.young for name, material in self.problem.materials.items()}
         forces = [force for step in case.step for force in step.body_force.values()]
-        densities = [force.density for force in forces if force.density != 1.0]
+        given = [force for force in forces if force.density != 1.0]
+        densities = [force.density for force in given]
         densities += [table.density for table in case.material.values() if table.density]
+        weights: list[Gravity | BodyForce] = [*given]
+        weights += [step.gravity for step in case.step if step.gravity is not None]
         x = model.mesh.geometry.x
         low, high = x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)
         low = np.min(self.problem.comm.allgather(low), axis=0)
         high = np.max(self.problem.comm.allgather(high), axis=0)
-        found = doubts(case.units, young, densities, float((high - low).max()))
+        size, gravity = float((high - low).max()), accelerations(weights)
+        found = doubts(case.units, young, densities, size, gravity)
         found += [*self.torn, *_untimed(case), *idle_amplitudes(case), *cut_paths(case)]
         found += _at_points(case, self.problem)
         return found + [

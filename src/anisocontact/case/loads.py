@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -112,6 +114,28 @@ class Gravity(Components):
     x: Annotated[float | Scheduled | None, prescribed("length/time^2", "along x")] = None
     y: Annotated[float | Scheduled | None, prescribed("length/time^2", "along y")] = None
     z: Annotated[float | Scheduled | None, prescribed("length/time^2", "along z")] = None
+
+
+def accelerations(tables: Iterable[Gravity | BodyForce]) -> list[float]:
+    """How large some accelerations are, without those that are zero.
+
+    Args:
+        tables: Gravity, or forces on bodies of a density; of values that follow an amplitude the
+            factor of it counts.
+
+    Returns:
+        Their sizes, length over time squared, each of them once.
+
+    Example:
+        >>> accelerations([Gravity(x=3.0, z=-4.0), Gravity(z=0.0)])
+        [5.0]
+    """
+    rows = ([table.x, table.y, table.z] for table in tables)
+    found = (
+        math.hypot(*(one.value if isinstance(one, Scheduled) else one or 0.0 for one in row))
+        for row in rows
+    )
+    return list(dict.fromkeys(size for size in found if size > 0.0))
 
 
 class Anchor(Components):

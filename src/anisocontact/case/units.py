@@ -20,8 +20,9 @@ STRESSES = {
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
 #: Systems that a case without the table may be written in: length, force.
 SYSTEMS = (("m", "N"), ("mm", "N"), ("um", "uN"), ("in", "lbf"), ("cm", "N"), ("m", "kN"))
-#: SI values from one to the other: gel to diamond, gas to osmium, a grain to a bridge.
-YOUNG, DENSITY, SIZE = (1e2, 1.5e12), (0.05, 2.5e4), (1e-7, 1e4)
+#: SI values from one to the other: gel to diamond, gas to osmium, a grain to a bridge, an asteroid
+#: to a centrifuge.
+YOUNG, DENSITY, SIZE, GRAVITY = (1e2, 1.5e12), (0.05, 2.5e4), (1e-7, 1e4), (0.02, 5e3)
 
 
 class Units(Section):
@@ -48,14 +49,14 @@ class Units(Section):
             given["force"] = next(named, f"{self.stress} {self.length}^2")
         return given
 
-    def system(self) -> tuple[float, float] | None:
-        """Length and force in SI units, where they are known."""
+    def system(self) -> tuple[float, float, float] | None:
+        """Length, force and time in SI units, where the first two are known; else seconds."""
         if not self.length:
             return None
-        length = LENGTHS[self.length]
+        length, time = LENGTHS[self.length], TIMES[self.time or "s"]
         if self.force:
-            return length, FORCES[self.force]
-        return (length, STRESSES[self.stress] * length**2) if self.stress else None
+            return length, FORCES[self.force], time
+        return (length, STRESSES[self.stress] * length**2, time) if self.stress else None
 
 
 def check_units(units: Units) -> Iterator[InputError]:
@@ -69,7 +70,11 @@ def check_units(units: Units) -> Iterator[InputError]:
 
 
 def doubts(
-    units: Units, young: Mapping[str, float], densities: Sequence[float], size: float
+    units: Units,
+    young: Mapping[str, float],
+    densities: Sequence[float],
+    size: float,
+    gravity: Sequence[float] = (),
 ) -> list[str]:
     """What is hardly meant, a line each.
 
@@ -78,6 +83,7 @@ def doubts(
         young: Young's modulus by body, stress.
         densities: Densities, mass over volume.
         size: Longest side of the bodies, length.
+        gravity: Accelerations that give bodies their weight, length over time squared.
 
     Returns:
         Lines; nothing where the numbers make sense in the units given or, without units, in some
@@ -87,35 +93,41 @@ def doubts(
         >>> doubts(Units(length="mm", force="N"), {"block": 210e9}, [], 100.0)
         ['units: E of block is 2.1e+17 Pa in mm and N; 100 to 1.5e+12 Pa are usual']
     """
+    values = young, densities, size, gravity
     given = units.system()
     if given is not None:
-        return [f"units: {text}" for text in _odd(*given, _name(units), young, densities, size)]
+        return [f"units: {text}" for text in _odd(given, _name(units), *values)]
     for length, force in SYSTEMS:
-        if not _odd(LENGTHS[length], FORCES[force], "", young, densities, size):
+        if not _odd((LENGTHS[length], FORCES[force], 1.0), "", *values):
             return []
+    parts = ["Young's moduli", "densities", *(["gravity"] if gravity else []), "the size"]
     return [
-        "units: Young's moduli, densities and the size of the bodies do not fit together in m and "
-        "N, mm and N or other usual units; [units] says what they are in"
+        f"units: {', '.join(parts[:-1])} and {parts[-1]} of the bodies do not fit together in m "
+        "and N, mm and N or other usual units; [units] says what they are in"
     ]
 
 
 def _name(units: Units) -> str:
-    return f"{units.length} and {units.force or units.stress}"
+    names = [units.length, units.force or units.stress, *([units.time] if units.time else [])]
+    return f"{', '.join(map(str, names[:-1]))} and {names[-1]}"
 
 
 def _odd(
-    length: float,
-    force: float,
+    system: tuple[float, float, float],
     name: str,
     young: Mapping[str, float],
     densities: Sequence[float],
     size: float,
+    gravity: Sequence[float],
 ) -> list[str]:
-    """Values out of the usual range, where units of length and force have these sizes."""
+    """Values out of the usual range, where units of length, force and time have these sizes."""
+    length, force, time = system
+    mass = force * time**2 / length
     values = [
         *((f"E of {body}", e * force / length**2, "Pa", YOUNG) for body, e in young.items()),
-        *(("a density", rho * force / length**4, "kg/m^3", DENSITY) for rho in densities),
+        *(("a density", rho * mass / length**3, "kg/m^3", DENSITY) for rho in densities),
         ("the size of the bodies", size * length, "m", SIZE),
+        *(("gravity", g * length / time**2, "m/s^2", GRAVITY) for g in gravity),
     ]
     return [
         f"{what} is {value:.3g} {unit} in {name}; {low:g} to {high:.3g} {unit} are usual"
