@@ -122,7 +122,9 @@ class EnergyWatch:
         self.pushed_apart, self._overlap = self._overlap, False
         share = self._share(energies)
         worst = list(Cause)[int(np.abs(self._parts).argmax())]
-        return Imbalance(share, worst.value if share > 0.0 else "", *self._given())
+        driven, driven_by = self._given()
+        cause_told = worst.value if share > 0.0 else ""
+        return Imbalance(share, cause_told, driven=driven, driven_by=driven_by)
 
     def persistent(self) -> Floats:
         """What the next increments depend on."""

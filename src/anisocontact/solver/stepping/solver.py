@@ -116,8 +116,8 @@ class Solver(Uncopied):
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
-        watches = CutFaceWatch(problem), RollingWatch(problem), TurnedFaceWatch(problem)
-        self._cut_faces, self._rolling, self._faces = watches
+        self._cut_faces, self._rolling = CutFaceWatch(problem), RollingWatch(problem)
+        self._faces = TurnedFaceWatch(problem)
         self._symmetry = SymmetryWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)

@@ -209,10 +209,19 @@ def closed(
     if correction is not None:
         residual = residual - correction
     outside, load = forces or (np.zeros(0), np.zeros(0))
-    scale, round_off = sizes.force_scale, 0.0 if reached.gone else sizes.round_off
-    got, far = reached.prescribed, reached.far
-    rounded = (sizes.rounded, far, sizes.hardness)
-    return ForceBalance(residual, norm, scale, round_off, outside, load, fields, got, *rounded)
+    return ForceBalance(
+        residual=residual,
+        norm=norm,
+        force_scale=sizes.force_scale,
+        round_off=0.0 if reached.gone else sizes.round_off,
+        outside=outside,
+        load=load,
+        fields=fields,
+        reached=reached.prescribed,
+        rounded=sizes.rounded,
+        far=reached.far,
+        hardness=sizes.hardness,
+    )
 
 
 # Stands for the forces where there are none, so that zero over zero is zero.
