@@ -44,6 +44,36 @@ increments = 1
 pictures = false
 """
 
+#: A block on another one, supported or not.
+STACK = """
+[mesh.box.a]
+origin = [0, 0, 0]
+size = [1, 1, 0.5]
+cells = [3, 3, 2]
+
+[mesh.box.b]
+origin = [0, 0, -0.5]
+size = [1, 1, 0.5]
+cells = [2, 2, 2]
+
+[material]
+a = {{ model = "linear-elastic", E = 1000, nu = 0.3 }}
+b = {{ model = "linear-elastic", E = 1000, nu = 0.3 }}
+
+[[contact]]
+slave = "a.bottom"
+master = "b.top"
+friction = {{ coefficients = 0.3 }}
+
+[[step]]
+name = "press"
+increments = 2
+displacement = {{ {support}"a.top" = {{ x = 0, y = 0, z = -0.01 }} }}
+
+[output]
+pictures = false
+"""
+
 
 def _summary(tmp_path: Path, text: str) -> dict:
     case, out = tmp_path / "case.toml", tmp_path / "out"
@@ -61,6 +91,18 @@ def test_check_and_run_say_it_and_say_it_again_where_nothing_touches(tmp_path, c
     assert "swap slave and master" in at_start
     assert "no point touches at the end; the facets of the slave are 20 times" in at_end
     assert at_start in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("supported", [True, False])
+def test_a_body_without_support_that_is_pushed_along_is_told_of(tmp_path, supported):
+    """Requirement: who forgets the support of a body hears that the contact carries nothing.
+
+    Source: a body that nothing holds is in equilibrium wherever it is pushed to, without forces.
+    """
+    support = '"b.bottom" = { x = 0, y = 0, z = 0 }, ' if supported else ""
+    text = STACK.format(support=support)
+    told = _summary(tmp_path, text)["warnings"]
+    assert any("support is missing" in line for line in told) == (not supported)
 
 
 @pytest.mark.parametrize(("angle", "told"), [(30, True), (0, False)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from anisocontact.base.array_types import Flags
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.remote_nodes import node_count, with_ghosts
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -16,6 +17,16 @@ NARROW = (
     "narrower than two facets, and pressures at points are off by 10 to 40% (a Hertz contact of "
     "0.5 to 1 facet in radius); resultants are not; finer facets where it touches reduce that"
 )
+
+
+#: Pressure that is rounding, over that which presses a surface in by a facet.
+_ROUNDING = 1e-13
+
+
+def pressed(contact: Contact) -> Flags:
+    """Points of the accepted state whose pressure is more than rounding, (n,)."""
+    none = _ROUNDING * contact.body_stiffness * contact.facet_size
+    return np.asarray(contact.last.pressure > none)
 
 
 def narrow_so_far(contact: Contact, before: bool | None) -> bool | None:
@@ -44,10 +55,10 @@ def is_narrow(contact: Contact) -> bool | None:
     if not isinstance(points, SlaveNodes) or (flat and space.mesh.comm.size > 1):
         return None
     nodal = np.zeros(node_count(space))
-    pressed = contact.last.pressure > 0.0
-    nodal[points.nodes[pressed, 0]] = 1.0
+    here = pressed(contact)
+    nodal[points.nodes[here, 0]] = 1.0
     nodal = points.led(points.everywhere(with_ghosts(space, nodal)))
     around = points.around.nodes % len(nodal)  # images, beside a plane or in other sectors
-    inside = pressed & (nodal[around] > 0.0).all(axis=1)
-    counts = space.mesh.comm.allreduce(np.array([pressed.sum(), inside.sum()]))
+    inside = here & (nodal[around] > 0.0).all(axis=1)
+    counts = space.mesh.comm.allreduce(np.array([here.sum(), inside.sum()]))
     return None if not counts[0] else not counts[1]

@@ -17,7 +17,7 @@ from anisocontact.contact.hints import (
     overlapping,
     pressed_aside,
 )
-from anisocontact.contact.narrow import NARROW
+from anisocontact.contact.narrow import NARROW, pressed
 from anisocontact.contact.tips import points_on_tips
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
@@ -42,6 +42,11 @@ ROUNDING = 1e-5
 NORMAL = "a larger normal penalty"
 #: Share of the external work beyond which energy of stabilisation, or regularisation, is told.
 STABILISED = 0.05
+#: What is said of a contact whose points touch and carry nothing.
+IDLE = (
+    "points touch at the end, and carry no force: nothing presses the bodies together, as where a "
+    "support is missing that would keep one of them from being pushed along"
+)
 #: What is said where everything is written but the report.
 UNREPORTED = "no report: {lost}; where there is room: anisocontact report {folder}"
 #: What the summary has the largest value over the run of, and the quantity that it is of.
@@ -220,6 +225,8 @@ def at_end(
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             flat = _below_arcs(contact, entry["least_gap"])
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap, *flat]))
+        elif not contact.model.mesh.comm.allreduce(int(pressed(contact).any())):
+            found.append(f"{_pair(entry)}: {IDLE}")
         if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]
