@@ -244,13 +244,13 @@ class NonlinearBulk:
             u: Displacement of the nodes this rank owns, length; those of now count again if None.
 
         Returns:
-            Whether they do: corrections are then to be taken in full.
+            Whether corrections are to be taken in full, as of `CellPressures`.
         """
-        if self._pressures.follow:
+        if self._pressures.of:
             if u is not None:
                 self._set(u)
             self._pressures.follow_from(u is not None)
-        return self._pressures.follow
+        return self._pressures.in_full
 
     def set_time(self, dt: float) -> None:
         """Take over the time increment of the next states."""

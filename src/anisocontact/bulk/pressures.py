@@ -7,11 +7,13 @@ and pressure in a mixed form, of which the pressure `p = K Pe` is eliminated in 
 Hughes 1978; Simo Taylor Pister 1985]. What is constant in a cell is its own projection, whatever
 the shape of the cell, so that a patch test holds.
 
-Where K is large a Newton correction du leaves a pressure `K de(du, du)` of second order in it that
-means nothing, and a tangent with the stress of that pressure goes astray. There tangents have the
-pressure that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed
-form in which p is an unknown of its own. The first of them has that of the accepted state: one that
-is extrapolated changes the volume by the square of the increment, which K makes a pressure of, too.
+A Newton correction du leaves a pressure `K de(du, du)` of second order in it that means nothing,
+and a tangent with the stress of that pressure goes astray where K is large beside what the material
+has against changes of shape, as in rubber, or in metal that flows. So tangents have the pressure
+that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed form in
+which p is an unknown of its own. The first of them has that of the accepted state, unless that of
+the iterate is near: an extrapolated state changes the volume by the square of the increment, which
+K makes a pressure of, too.
 """
 
 from __future__ import annotations
@@ -39,8 +41,11 @@ from anisocontact.mesh import Model
 #: shape at most, where what is asked is how far a surface gives way: a half space of nu = 1/2 is
 #: 1.21 times as stiff as one of nu = 0.3, and nodes of it come to 1.3 times.
 MOST = 1.0
-#: From which on its pressures follow the corrections: nu = 0.4995 in a block of cubes.
-FOLLOW = 250.0
+#: From which on corrections are taken in full: nu = 0.4995 in a block of cubes.
+IN_FULL = 250.0
+#: Change of the pressures of a cell from the accepted state to the first iterate up to which the
+#: first tangent has those of the iterate, over the stiffness of the cell against changes of shape.
+NEAR = 2e-3
 #: Residual of displacements alone over that of both in a mixed form, at most, where pressures count
 #: as of `CellPressures.force_sizes`.
 OF_BOTH = 2.0**0.5
@@ -89,7 +94,7 @@ class CellPressures:
 
     Attributes:
         of: The pressure of each of these bodies by name, a DOLFINx function.
-        follow: Whether tangents are to have the pressures that corrections lead to.
+        in_full: Whether corrections are to be taken in full, without a line search.
         hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
         hardnesses: The same of every pressure this rank owns, the mean of its nodes, (pressures,).
     """
@@ -107,7 +112,7 @@ class CellPressures:
         self._pressure: Any = fem.Function(space)
         self._width = space.element.space_dimension
         self.of: dict[str, Any] = {}
-        self.follow, self.hardness = False, 0.0
+        self.in_full, self.hardness = False, 0.0
         self.hardnesses: Floats = np.zeros(0)
         self._from: tuple[Vec, Floats] | None = None
         self._begins = False
@@ -235,7 +240,7 @@ class CellPressures:
         self.hardness = max(self._pressure.function_space.mesh.comm.allgather(hardest))
         ratios = np.divide(held, shape, out=np.zeros_like(held), where=held > 0.0)
         self.hardnesses = self._mean_of_nodes(ratios)
-        self.follow = self.hardness > FOLLOW
+        self.in_full = self.hardness > IN_FULL
         found.array[:] -= np.maximum(held - MOST * rest, 0.0)
         return found
 
@@ -292,7 +297,7 @@ class CellPressures:
         """Let tangents have pressures that corrections lead to from those of here on, or of now.
 
         Args:
-            begin: Whether they do: the first tangent has the pressures of here, wherever it is.
+            begin: Whether they do; the first tangent has the pressures of here as of `_first`.
         """
         self._from = None
         self._begins = begin
@@ -309,7 +314,9 @@ class CellPressures:
         u, change = self._from
         now = self._pressure.x.array.copy()
         self._in_tangent = change
-        if not self._begins:
+        if self._begins:
+            self._in_tangent = self._first(change)
+        else:
             more = self._slope.createVecLeft()
             self._slope.mult(self._u.x.petsc_vec - u, more)
             self._in_tangent = change + more.array_r.reshape(change.shape)
@@ -317,6 +324,17 @@ class CellPressures:
         self._take(self._in_tangent)
         yield
         self._pressure.x.array[:] = now
+
+    def _first(self, accepted: Floats) -> Floats:
+        """Changes of volume of the first tangent, those of here where they are near enough.
+
+        Args:
+            accepted: Those of the accepted state.
+        """
+        here = self._changes()
+        away = self.hardnesses * np.abs(here - accepted).reshape(-1)
+        near = away <= NEAR * np.repeat(self._extents, self._width)
+        return np.where(near.reshape(here.shape), here, accepted)
 
     def _mean_of_nodes(self, values: Floats) -> Floats:
         """Mean of values of displacements over those that change a volume, by how much they do."""

@@ -244,7 +244,7 @@ class Problem(ComposedSystem, Uncopied):
     def in_full(self) -> bool:
         """Whether corrections are taken in full, without a line search, see `corrected`."""
         volume = self.bulk.volume
-        return volume is not None and volume.follow and not self.linear
+        return volume is not None and volume.in_full and not self.linear
 
     @override
     def corrected(self) -> AbstractContextManager[bool]:
