@@ -315,3 +315,48 @@ def test_friction_that_is_left_out_is_told() -> None:
     assert (shares > 0.0).any() and (shares == 0.0).any()
     steady = float(ratios[shares == 0.0].mean())
     assert ratios == pytest.approx((1.0 - shares) * steady, abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("way", "mortar", "told"),
+    [
+        ((0.7, 0.0, 0.0), True, True),
+        ((0.7, 0.0, 0.0), False, True),
+        ((0.25, 0.0, 0.0), True, False),
+        ((0.0, 0.0, -0.7), True, False),
+        ((0.1, 0.0, -0.7), True, True),
+        ((0.1, 0.0, -0.3), True, False),
+    ],
+)
+def test_points_from_afar_are_told(way: tuple[float, ...], mortar: bool, told: bool) -> None:
+    """A pad that comes from farther than twice the size of its facets lacks friction: it is told.
+
+    Requirement: the share of the normal force that has no friction, and no word where points come
+    from nearer or straight down. Source: nothing says how points have slid that the search did not
+    reach when the increment began, see the page on the interface model; all others slide, with
+    friction 0.3. Tolerance: 0.01, of which nothing is said.
+    """
+    down = way[2]
+    start = -0.1 - way[0] if down == 0.0 else 0.3
+    pad = BoxSpec((start, 0.3, -0.001 - down), (0.4, 0.4, 0.2), (2, 2, 1))
+    plate = BoxSpec((0.0, 0.0, -0.5), (1.0, 1.0, 0.5), (2, 2, 1))
+    model = build_box({"pad": pad, "plate": plate})
+    law = ContactLaw(
+        NormalLaw(penalty=NORMAL), Adhesion(stiffness=NORMAL), Friction(coefficients=0.3)
+    )
+    contact = Contact(model, "pad.bottom", "plate.top", law, mortar=mortar)
+    material = make_material("neo-hookean", E=E, nu=NU)
+    problem = Problem(model, {"pad": material, "plate": material}, [contact])
+    held = {"plate.bottom": dict.fromkeys("xyz", 0.0)}
+    moved = {"pad.top": dict(zip("xyz", way, strict=True))}
+    (accepted,) = Solver(problem, [Step("come", 1, held | moved)]).run()
+    force = contact.resultant()[0]
+    lacking = accepted.without_slip.get(contact.name)
+    assert (lacking is not None) == told
+    if told:
+        (line,) = (one for one in IncrementWarnings().of(accepted) if "no friction" in one)
+        assert "twice the size of their facets" in line
+    if way[0] != 0.0:
+        share = 0.0 if lacking is None else lacking.share
+        ratio = np.linalg.norm(force[:2]) / abs(force[2])
+        assert ratio == pytest.approx(0.3 * (1.0 - share), abs=0.01)

@@ -24,11 +24,13 @@ class ContinuationTrials(Trials):
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
 
     def without_slip(self) -> Flags:
-        """Points beyond the border of the master that slide on to it as if from nowhere, (n,).
+        """Points that come to the master as if from nowhere, (n,).
 
-        In the usual trials there are none, see `beyond_border`.
+        Those beyond its border, of which there are none in the usual trials, see `beyond_border`,
+        and those that were farther away than it is searched.
         """
-        return self.master.beyond(self._state) & ~self.master.located(self.start)
+        over = self.master.beyond(self._state) & ~self.master.located(self.start)
+        return over | self.master.from_afar(self.start)
 
     @property
     def penalised(self) -> bool:

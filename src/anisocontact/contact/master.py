@@ -308,6 +308,14 @@ class Master(Protocol):
         """Points of the accepted state, which is given, that are beyond its border, (n,)."""
         return np.zeros(len(state), dtype=bool)
 
+    def from_afar(self, start: State) -> Flags:
+        """Points of which nothing says how they slid to where they are now, (n,).
+
+        Args:
+            start: What trials start from.
+        """
+        return np.zeros(len(start), dtype=bool)
+
     def begin(self, state: State) -> State:
         """Take it that trials start from the accepted state.
 

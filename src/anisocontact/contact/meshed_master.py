@@ -21,6 +21,8 @@ from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
 #: Trace of the projection on held directions above which these are all: it is their number.
 ALL = 2.5
+#: Way along the master, over that towards it and the size of the facets, of which nothing is said.
+SLIGHT = 0.02
 
 
 class MeshedMaster(Master):
@@ -108,6 +110,21 @@ class MeshedMaster(Master):
     @override
     def beyond(self, state: State) -> Flags:
         return ~self.located(state) & beyond(self._accepted[1])
+
+    @override
+    def from_afar(self, start: State) -> Flags:
+        """Points that the master is below now, and that were farther away than it is searched."""
+        before, now = self._gathered.everywhere(self._accepted[0]), self._nodes.now
+        hit, points = self._hint, self.sides.points
+        came = self.located(self.here(start, 0.0)) & ~self.located(start) & (hit.facet >= 0)
+        rows = np.flatnonzero(came)
+        carried_by = (now - before)[self.sides.master.nodes[hit.facet[rows]]].mean(axis=1)
+        way = (points.positions(now) - points.positions(before))[rows] - carried_by
+        normal = points.outward_of(points.at(now))[rows]
+        towards = np.einsum("ni,ni->n", way, normal)
+        aside = np.linalg.norm(way - towards[:, None] * normal, axis=1)
+        came[rows] = aside > SLIGHT * (np.abs(towards) + points.size)
+        return came
 
     @override
     def stiffness(self, diagonal: Floats) -> float:

@@ -1,8 +1,8 @@
-"""Slave points that came on to a master from beyond its border without their slip.
+"""Slave points that came on to a master, or over its border, without their slip.
 
 The usual trials have these points slip from where they were, see `contact.beyond_border`. Those
 that are tried where these have failed let them come as if from nowhere: they carry no friction in
-that increment.
+that increment. So do points that were farther away than the master is searched.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SLIGHT = 0.01
 
 @dataclass(frozen=True)
 class WithoutSlip:
-    """Points of a contact that came over the border of its master and carry no friction.
+    """Points of a contact that came to its master and carry no friction.
 
     Attributes:
         count: How many they are.
@@ -36,10 +36,11 @@ class WithoutSlip:
         came = "slave point that came" if self.count == 1 else "slave points that came"
         has = "has" if self.count == 1 else "have"
         return (
-            f"{self.count} {came} over the border of the master in this increment {has} no "
-            f"friction in it, with {self.share:.2g} of the normal force: iterations with their "
-            "slip did not converge; their friction begins in the next increment, so take smaller "
-            "ones there"
+            f"{self.count} {came} to the master, or over its border, in this increment {has} no "
+            f"friction in it, with {self.share:.2g} of the normal force: where they were, more "
+            "than twice the size of their facets away, it was not searched, or iterations with "
+            "their slip did not converge; their friction begins in the next increment, so take "
+            "smaller ones there"
         )
 
 

@@ -78,8 +78,8 @@ class Accepted:
             several slave nodes, by name of the contact.
         faces: Faces at small strain that have turned so far that their pressure has an arm which is
             not there, by name of the contact; contacts without any are left out.
-        without_slip: Slave points that came over the border of their master in it and carry no
-            friction, by name of the contact; contacts without any are left out.
+        without_slip: Slave points that came to their master in it, or over its border, and carry
+            no friction, by name of the contact; contacts without any are left out.
         crossed: How far bodies have gone through their planes of symmetry, by facet group, length.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
