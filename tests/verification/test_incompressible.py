@@ -193,7 +193,7 @@ def test_corrections_do_not_grow_with_the_bulk_modulus(friction: float | None) -
 
     Requirement: nu = 0.5, K = 1.7e6 G, takes no cut and at most 1.4 times the corrections of nu =
     0.49, K = 50 G. Source: Newton's method of the mixed form does not know K [Simo Taylor Pister
-    1985]. Measured 38 for 34 glued, 37 for 31 sliding; 61 and 59 where the first correction of an
+    1985]. Measured 38 for 33 glued, 38 for 29 sliding; 61 and 59 where the first correction of an
     increment has the pressures of displacements that are extrapolated; 295 and 847, in 28 and 33
     parts, with the pressure of the displacements in the tangent.
     """

@@ -237,16 +237,17 @@ class NonlinearBulk:
         self._pressures.add_product(x, out)
         return out
 
-    def follow(self, u: Vec | None) -> bool:
+    def follow(self, u: Vec | None, by_penalties: bool = False) -> bool:
         """Let pressures in tangents follow the corrections from a state on, where volume is kept.
 
         Args:
             u: Displacement of the nodes this rank owns, length; those of now count again if None.
+            by_penalties: Whether penalties press: they follow corrections in full alone then.
 
         Returns:
             Whether corrections are to be taken in full, as of `CellPressures`.
         """
-        if self._pressures.of:
+        if self._pressures.of and (self._pressures.in_full or not by_penalties):
             if u is not None:
                 self._set(u)
             self._pressures.follow_from(u is not None)

@@ -13,7 +13,8 @@ has against changes of shape, as in rubber, or in metal that flows. So tangents 
 that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed form in
 which p is an unknown of its own. The first of them has that of the accepted state, unless that of
 the iterate is near: an extrapolated state changes the volume by the square of the increment, which
-K makes a pressure of, too.
+K makes a pressure of, too. Where penalties press it is so only if K is larger by orders: a residual
+with stiff ones has to fall with every correction, and those of a mixed form let it rise.
 """
 
 from __future__ import annotations
@@ -326,15 +327,16 @@ class CellPressures:
         self._pressure.x.array[:] = now
 
     def _first(self, accepted: Floats) -> Floats:
-        """Changes of volume of the first tangent, those of here where they are near enough.
+        """Changes of volume of the first tangent: those of here if all are near, collective.
 
         Args:
             accepted: Those of the accepted state.
         """
         here = self._changes()
         away = self.hardnesses * np.abs(here - accepted).reshape(-1)
-        near = away <= NEAR * np.repeat(self._extents, self._width)
-        return np.where(near.reshape(here.shape), here, accepted)
+        far = bool((away > NEAR * np.repeat(self._extents, self._width)).any())
+        comm = self._pressure.function_space.mesh.comm
+        return accepted if comm.allreduce(int(far)) else here
 
     def _mean_of_nodes(self, values: Floats) -> Floats:
         """Mean of values of displacements over those that change a volume, by how much they do."""

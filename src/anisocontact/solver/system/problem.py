@@ -248,7 +248,7 @@ class Problem(ComposedSystem, Uncopied):
 
     @override
     def corrected(self) -> AbstractContextManager[bool]:
-        return self.assembly.bodies.followed(self._bodies.nodal)
+        return self.assembly.bodies.followed(self._bodies.nodal, self.contact_term.by_penalties)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.

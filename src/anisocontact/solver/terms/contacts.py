@@ -162,6 +162,11 @@ class Contacts(Term):
         return any(one.simultaneous for one in self._trials)
 
     @property
+    def by_penalties(self) -> bool:
+        """Whether there are contacts, and forces of all depend on displacements alone."""
+        return bool(self._trials) and not self.simultaneous
+
+    @property
     def faint(self) -> bool:
         """Whether forces hardly tell what multipliers violate: penalties of bodies that bend."""
         return self.bends and any(one.faint for one in self._trials)
