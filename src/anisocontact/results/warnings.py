@@ -194,6 +194,21 @@ def narrow(shown: Sequence[dict[str, Any]]) -> list[str]:
     return [f"{_pair(entry)}: {NARROW}" for entry in shown if entry.get("narrow")]
 
 
+def idle(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> list[str]:
+    """Contacts of a run that is done whose points touch and carry nothing.
+
+    Args:
+        contacts: The contacts.
+        shown: Their entries in the summary.
+    """
+    return [
+        f"{_pair(entry)}: {IDLE}"
+        for contact, entry in zip(contacts, shown, strict=True)
+        if entry["points"]["open"] < sum(entry["points"][name] for name in STATUS)
+        if not contact.model.mesh.comm.allreduce(int(pressed(contact).any()))
+    ]
+
+
 def at_end(
     contacts: Sequence[Contact],
     shown: Sequence[dict[str, Any]],
@@ -225,8 +240,6 @@ def at_end(
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             flat = _below_arcs(contact, entry["least_gap"])
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap, *flat]))
-        elif not contact.model.mesh.comm.allreduce(int(pressed(contact).any())):
-            found.append(f"{_pair(entry)}: {IDLE}")
         if not any(BORDERS in line for line in told if line.startswith(_pair(entry))):
             found += hidden_borders([contact])
     found += [*pressed_aside(contacts), *faceted(contacts)]

@@ -34,6 +34,7 @@ from anisocontact.results.warnings import (
     UNREPORTED,
     at_end,
     at_start,
+    idle,
     narrow,
     of_models,
     soft,
@@ -299,7 +300,7 @@ class Writer:
         relaxed = bool(self.summary.get("relaxed"))
         found = at_end(contacts, shown, self.summary["energy"], relaxed, self._at_start)
         if status == "done":  # a run that stopped has its reason
-            found += [*soft(contacts, shown, relaxed), *narrow(shown)]
+            found += [*idle(contacts, shown), *soft(contacts, shown, relaxed), *narrow(shown)]
         missed = [event["text"] for event in self.summary["events"] if not event["happened"]]
         found = [*missed, *found]
         known = [*self._at_start, *self._lasting.values(), *found, *of_models(self.summary)]
