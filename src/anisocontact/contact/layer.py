@@ -34,6 +34,8 @@ from anisocontact.interface.series import SeriesHistory
 ENOUGH = 1e-5
 #: Corrections of the coordinates that slip counts from.
 _CORRECTIONS = 3
+#: Cosine between two tangent planes that stand on edge on each other.
+_EDGEWISE = 1e-9
 
 
 class Layer:
@@ -173,8 +175,7 @@ class Layer:
         there, way = before, now.chord(way, self._spin)
         for _ in range(_CORRECTIONS):
             along = np.einsum("nid,nd->ni", now.tangents, way - (there - before))[..., None]
-            both = np.einsum("nid,njd->nij", now.tangents, tangents)
-            state["xi"] += np.linalg.solve(both, along)[..., 0]
+            state["xi"] += _coordinates(now.tangents, tangents, along)
             there, tangents = self._master(state)
         turned = now.turned_to(Frames.of(tangents), force)
         state["stored"] = np.einsum("nid,nd->ni", tangents, turned)
@@ -220,6 +221,19 @@ class _LayerCompliance:
     def under(self, force: Floats) -> Floats:
         """Under a force at each point, (n, 3)."""
         return np.asarray(np.einsum("nij,nj->ni", self.compliance, force))
+
+
+def _coordinates(now: Floats, tangents: Floats, along: Floats) -> Floats:
+    """Steps in the coordinates of the master that lead as far along tangents of now, (n, 2).
+
+    A point that has come to no place of the master has a frame of its own, which may stand on edge
+    on the place it started from: it stays there.
+    """
+    both = np.einsum("nid,njd->nij", now, tangents)
+    lengths = np.linalg.norm(now, axis=2) * np.linalg.norm(tangents, axis=2)
+    edgewise = np.abs(np.linalg.det(both)) <= _EDGEWISE * lengths.prod(axis=1)
+    both[edgewise] = np.eye(2)
+    return np.where(edgewise[:, None], 0.0, np.linalg.solve(both, along)[..., 0])
 
 
 def _components(axes: Floats, vectors: Floats) -> Floats:
