@@ -61,8 +61,12 @@ _IN_VTK |= {full: _IN_VTK[edges] for full, edges in ((12, 17), (13, 18), (14, 19
 _AS_THEY_ARE = set(CELLS)
 #: What groups of cells are of; without volumes surfaces are bodies in the plane.
 _GROUPS = {3: "volume", 2: "the file has no volumes, and surface"}
+#: What groups are of, by their dimension.
+_OF = ("point", "curve", "surface", "volume")
 #: Corners of facets by the gmsh element type of these.
 _CORNERS = {1: 2, 8: 2, 2: 3, 9: 3}
+#: Most groups that a line lists.
+MOST = 5
 
 
 @typed
@@ -160,6 +164,7 @@ def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> 
     places = {name: np.flatnonzero(labels == i) for i, name in enumerate(names)}
     mesh = MeshArrays(
         *(cell, degree, msh.points[used], cells, places, {}, degree),
+        notes=_without_name(msh, comm),
         torn=_torn(msh, dim, volumes, used, known, comm),
         comm=comm,
     )
@@ -183,6 +188,7 @@ def _arrays(msh: MshFile, dim: int, bodies: Sequence[str] | None, comm: Any) -> 
 def _made_over(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> MeshArrays:
     """Cells of which nodes are put in, or which are cut, so that a mesh can have them."""
     mesh = WholeMesh(msh.points)
+    mesh.notes = _without_name(msh, MPI.COMM_SELF)
     taken = _volumes(msh, dim, bodies)
     others = [("", b) for b in msh.blocks if b.dim == dim and all(b is not one for _, one in taken)]
     for name, block in taken + others:
@@ -195,6 +201,17 @@ def _made_over(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> MeshArra
         before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
         mesh.node_sets[name] = np.union1d(before, block.nodes)
     return mesh.arrays(bodies)
+
+
+def _without_name(msh: MshFile, comm: Any) -> tuple[str, ...]:
+    """A line on groups that have no name, of which nothing is made; collective."""
+    own = {(b.dim, g) for b in msh.blocks if b.count for g in b.groups if g} - msh.names.keys()
+    found = sorted(set().union(*comm.allgather(own)))
+    if not found:
+        return ()
+    listed = ", ".join(f"{_OF[dim]} {group}" for dim, group in found[:MOST])
+    more = f" and {len(found) - MOST} more" if len(found) > MOST else ""
+    return (f"physical groups without a name are left out: {listed}{more}",)
 
 
 def _torn(

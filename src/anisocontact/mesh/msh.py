@@ -212,9 +212,12 @@ def _partitioned_entities(stream: Stream) -> Groups:
 
 
 def _physical_tags(stream: Stream, dim: int) -> tuple[int, ...]:
-    """Those of an entity, past its box and the entities that bound it."""
+    """Those of an entity, past its box and the entities that bound it.
+
+    A group has the number of one with a minus sign where its elements are the other way round.
+    """
     stream.floats(6 if dim else 3)
-    tags = tuple(int(g) for g in stream.ints(int(stream.sizes()[0])))
+    tags = tuple(abs(int(g)) for g in stream.ints(int(stream.sizes()[0])))
     if dim:
         stream.ints(int(stream.sizes()[0]))
     return tags
@@ -281,7 +284,9 @@ def _elements_2(stream: Stream, entities: Groups, comm: Any) -> list[ElementBloc
         for start in range(0, count, PIECE):
             some = min(PIECE, count - start)
             table = stream.ints(some * width).reshape(some, width)
-            label = table[:, int(stream.binary)] if labels else np.zeros(some, dtype=np.int64)
+            label = (
+                np.abs(table[:, int(stream.binary)]) if labels else np.zeros(some, dtype=np.int64)
+            )
             for group in np.unique(label):
                 growing = rows.setdefault((kind, int(group)), _Growing(comm))
                 growing.add(table[label == group, width - nodes :])
