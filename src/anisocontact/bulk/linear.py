@@ -42,6 +42,8 @@ class LinearBulk:
 
     #: Length whose strain is round-off where nothing moves: none, `K 0` is exactly zero.
     rest_length = 0.0
+    #: Whether a body is at finite strain.
+    finite = False
     #: Whether `energy` is that of all bodies.
     stores = True
     #: Linear materials have no history.

@@ -17,7 +17,13 @@ from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated, ThermalExpansion, without_expansion
 from anisocontact.bulk.history import BodyHistory
-from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
+from anisocontact.bulk.materials import (
+    Density,
+    Material,
+    body_measure,
+    linear_parts,
+    small_strain,
+)
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import CellPressures
 from anisocontact.bulk.thermal_work import ThermalWork
@@ -73,6 +79,8 @@ class NonlinearBulk:
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
         #: the size of a cell.
         self.rest_length = cell_size(model.mesh)
+        #: Whether a body is at finite strain.
+        self.finite = not all(small_strain(law) for law in materials.values())
         #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
         _check_stiff(model, materials, self.diagonal)

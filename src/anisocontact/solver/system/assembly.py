@@ -136,8 +136,9 @@ class Assembly:
             float(np.linalg.norm(of_bodies[self.rigid.prescribed()])),
         ]
         load_norm = float(np.hypot(on_nodes, float(np.linalg.norm(self.rigid.loads()))))
-        stiff = max(stiff, self.bodies.largest) + lever + self.fields.rounded(x)
-        sizes = Magnitudes(load_norm, at_work, stiff, self.bodies.bulk.hardness)
+        bulk = self.bodies.bulk
+        stiff = max(stiff, self.bodies.largest) + self.fields.rounded(x)
+        sizes = Magnitudes(load_norm, at_work, stiff, lever, bulk.hardness, bulk.finite)
         return closed(
             np.append(residual, of_bodies) if layout.last_rank else residual,
             sizes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,14 @@ LOAD_SHARE = 1e-6
 GONE = 1e6
 #: Hardness from which on it is what rounds: nu = 0.49998 and more.
 HARD = 1e4
+
+
+class Rounds(Enum):
+    """What is rounded where loads are too small for it, in words."""
+
+    STRAINS = "forces inside bodies at finite strain"
+    FORCES = "forces inside bodies"
+    PLACES = "places of what touches"
 
 
 @dataclass(frozen=True)
@@ -87,6 +96,7 @@ class ForceBalance:
         rounded: Residual that floating point leaves however small the loads are, force.
         far: See `Reached.far`.
         hardness: See `Magnitudes.hardness`.
+        rounds: See `Magnitudes.rounds`.
     """
 
     residual: Floats
@@ -100,6 +110,7 @@ class ForceBalance:
     rounded: float = 0.0
     far: float = 0.0
     hardness: float = 0.0
+    rounds: Rounds = Rounds.FORCES
 
     @classmethod
     def none(cls, owned: int) -> ForceBalance:
@@ -128,13 +139,14 @@ class ForceBalance:
                 "far, more than all is long: where that is not prescribed, contact and friction do "
                 "not hold the loads on them; load them less, or lead them by displacements"
             )
-        cures = ["larger loads", "a material at small strain"]
-        if self.hardness > HARD:
+        cures = ["larger loads"]
+        if self.rounds is Rounds.STRAINS:
+            cures.append("a material at small strain")
+        if self.rounds is not Rounds.PLACES and self.hardness > HARD:
             cures.append("nu = 0.4999 in the place of 0.5, a hundredth of this rounding")
-        return (
-            "which may be rounding of the forces inside bodies, beside which loads are small: "
-            f"{', '.join(cures[:-1])}, or {cures[-1]}"
-        )
+        said = ", or ".join(filter(None, [", ".join(cures[:-1]), cures[-1]]))
+        rounded = f"which may be rounding of the {self.rounds.value}"
+        return f"{rounded}, beside which loads are small: {said}"
 
     def of_fields(self, norm: float) -> tuple[FieldBalance, ...]:
         """The balance of each field, where the residual as a whole has a norm."""
@@ -148,14 +160,18 @@ class Magnitudes:
     Attributes:
         load: Of the loads.
         at_work: Of whatever else is at work.
-        stiff: Of the forces that are rounded: of nodes moved alone, and levers of the terms.
+        stiff: Of the forces of nodes moved alone, which are rounded.
+        lever: Of the terms, see `Term.lever`, which are rounded as well.
         hardness: Of bodies at finite strain against changes of volume, see `CellPressures`.
+        finite: Whether a body is at finite strain.
     """
 
     load: float
     at_work: Sequence[float]
     stiff: float
+    lever: float = 0.0
     hardness: float = 0.0
+    finite: bool = False
 
     @property
     def force_scale(self) -> float:
@@ -170,7 +186,14 @@ class Magnitudes:
     @property
     def rounded(self) -> float:
         """As of `ForceBalance`."""
-        return ROUND_OFF * self.stiff
+        return ROUND_OFF * (self.stiff + self.lever)
+
+    @property
+    def rounds(self) -> Rounds:
+        """What most of the rounding is of."""
+        if self.lever > self.stiff:
+            return Rounds.PLACES
+        return Rounds.STRAINS if self.finite else Rounds.FORCES
 
 
 #: All that is prescribed, and nothing is far.
@@ -221,6 +244,7 @@ def closed(
         rounded=sizes.rounded,
         far=reached.far,
         hardness=sizes.hardness,
+        rounds=sizes.rounds,
     )
 
 

@@ -253,5 +253,5 @@ class ContactSystem(AssembledSystem):
         springs = float(np.linalg.norm(self._rigid.spring_forces()))
         forces = float(np.linalg.norm(self.forces))
         stiff = max(float(np.linalg.norm(self._stiff * u)), self._assembly.bodies.largest)
-        stiff += self._assembly.acting.lever()
-        return Magnitudes(self._load_norm, [forces, supports, springs], stiff)
+        lever = self._assembly.acting.lever()
+        return Magnitudes(self._load_norm, [forces, supports, springs], stiff, lever)
