@@ -196,5 +196,5 @@ def _on(block, space):
     """The contact as one of another space, whose body is checked all the same."""
     from anisocontact.mesh.node_unknowns import NodeUnknowns
 
-    block.contact.unknowns = NodeUnknowns(space)
+    vars(block.contact)["unknowns"] = NodeUnknowns(space)
     return block.contact

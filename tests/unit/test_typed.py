@@ -321,6 +321,67 @@ def test_nobody_writes_into_a_step(write: Any) -> None:
     assert repr(step) == before
 
 
+@dataclasses.dataclass
+class Made:
+    """Things that a script has made, each of others."""
+
+    steel: Any
+    friction: Any
+    contact: Any
+    problem: Any
+    solver: Any
+
+
+@pytest.fixture(scope="module")
+def made() -> Made:
+    box = anisocontact.make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(1, 1, 1))
+    model = anisocontact.build_mesh([anisocontact.Body("block", box)])
+    steel = anisocontact.make_material("linear-elastic", E=210e3, nu=0.3)
+    friction = anisocontact.Friction(coefficients=0.3)
+    plane = anisocontact.make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = anisocontact.Contact(model, "block.bottom", plane, friction)
+    problem = anisocontact.Problem(model, {"block": steel}, [contact])
+    step = anisocontact.Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+    return Made(steel, friction, contact, problem, anisocontact.Solver(problem, [step]))
+
+
+WRITTEN: list[tuple[str, Callable[[Made], None]]] = [
+    ("LinearElastic.E: ", lambda made: setattr(made.steel, "E", 70e3)),
+    ("LinearElastic.young: ", lambda made: setattr(made.steel, "young", 70e3)),
+    ("LinearElastic.nu: ", lambda made: delattr(made.steel, "nu")),
+    ("Friction.coefficients: ", lambda made: setattr(made.friction, "coefficients", 0.1)),
+    ("Friction.directions: ", lambda made: setattr(made.friction, "directions", None)),
+    ("Contact.law: ", lambda made: setattr(made.contact, "law", made.friction)),
+    ("Contact.current_area: ", lambda made: setattr(made.contact, "current_area", False)),
+    ("Problem.contacts: ", lambda made: setattr(made.problem, "contacts", [])),
+    ("Solver.limits: ", lambda made: setattr(made.solver, "limits", anisocontact.Limits())),
+    ("read only", lambda made: made.problem.materials.update(block=made.steel)),
+    ("Model.order: ", lambda made: setattr(made.problem.model, "order", 2)),
+]
+
+
+@pytest.mark.parametrize(("said", "write"), WRITTEN, ids=[said for said, _ in WRITTEN])
+def test_nobody_writes_into_what_has_been_read(
+    made: Made, said: str, write: Callable[[Made], None]
+) -> None:
+    """Requirement: a value that nothing would follow is refused, with its name.
+
+    Source: by hand. All of these were taken without a word, and changed nothing.
+    """
+    with pytest.raises(InputError, match=rf"^{said}.*read only|^read only"):
+        write(made)
+
+
+def test_what_is_followed_may_be_written(made: Made) -> None:
+    """Requirement: methods may be replaced, and what a class lets change; a copy is as its like."""
+    made.contact.physical_adhesion = True
+    made.problem.predict_contact = made.problem.predict_contact
+    for copied in (copy.deepcopy(made.steel), pickle.loads(pickle.dumps(made.steel))):
+        assert copied.young == made.steel.young
+        with pytest.raises(InputError, match="read only"):
+            copied.young = 1.0
+
+
 def test_a_step_is_copied_and_changed_by_making_another() -> None:
     """Requirement: copies, pickles and `dataclasses.replace` of a step are steps like others."""
     step = anisocontact.Step("drag", 1, {"block.top": {"z": 0.0}}, motion={"tool": {"x": 1.0}})

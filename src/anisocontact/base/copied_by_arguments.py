@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Self
 
+from anisocontact.base.sealed import Sealed
 
-class CopiedByArguments:
+
+class CopiedByArguments(Sealed):
     """What is copied and pickled by the arguments it was made of, and has no other state.
 
     Example:

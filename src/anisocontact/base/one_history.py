@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.sealed import Sealed
 
 
-class OneHistory:
+class OneHistory(Sealed, changing="history_of"):
     """A part of a problem that remembers its increments: no other problem can go on from them.
 
     Attributes:

@@ -23,8 +23,8 @@ class ReadOnlyDict(dict[Any, Any]):
     """
 
     def _refuse(self, *args: Any, **kwargs: Any) -> NoReturn:
-        text = "read only, as what has it was checked when it was made: make another one, as with"
-        raise InputError(f"{text} dataclasses.replace")
+        text = "read only, as what has it was checked when it was made: make another one, of a step"
+        raise InputError(f"{text} by dataclasses.replace")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NoReturn
 
+from anisocontact.base.sealed import Sealed
 
-class Uncopied:
+
+class Uncopied(Sealed):
     """What is neither copied nor pickled: a copy would go on with the history of the first.
 
     Example:

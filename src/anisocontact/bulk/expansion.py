@@ -16,13 +16,14 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.processes import on_all
 from anisocontact.base.sampled import sampled
+from anisocontact.base.sealed import Sealed
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Material, small_strain
 from anisocontact.mesh import Idealisation, Model
 
 
 @typed
-class ThermalExpansion:
+class ThermalExpansion(Sealed):
     """A material with thermal expansion; see `Step.temperature`.
 
     Args:

@@ -12,6 +12,7 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.sealed import Sealed
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
 from anisocontact.bulk.user_function import check_function
@@ -217,7 +218,7 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
 
 
 @typed
-class UserEnergy(Hyperelastic):
+class UserEnergy(Sealed, Hyperelastic):
     """A material by the user's own energy.
 
     Args:
@@ -251,7 +252,7 @@ class UserEnergy(Hyperelastic):
 
 
 @typed
-class UserStress:
+class UserStress(Sealed):
     """A material by the user's own stress; it need not come from an energy.
 
     Args:

@@ -11,6 +11,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.sealed import Sealed
 from anisocontact.bulk.volume import Volume
 from anisocontact.mesh import Model
 
@@ -85,7 +86,7 @@ def constant(u: Any, value: float) -> Any:
 INCOMPRESSIBLE = 0.4999995
 
 
-class Isotropic:
+class Isotropic(Sealed):
     """A material of two moduli at rest.
 
     Where it is `incompressible`, nu = 0.5 is allowed and taken as `INCOMPRESSIBLE`, with a bulk

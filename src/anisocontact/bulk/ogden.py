@@ -12,6 +12,7 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.sealed import Sealed
 from anisocontact.bulk.materials import constant
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.rubber import BULK
@@ -19,7 +20,7 @@ from anisocontact.bulk.strain import spectral, turned
 from anisocontact.bulk.volume import Volume, volume_ratio
 
 
-class Ogden(ElasticVolume):
+class Ogden(Sealed, ElasticVolume):
     """`W = sum_p mu_p/alpha_p (s1^alpha_p + s2^alpha_p + s3^alpha_p - 3) + K/2 (J - 1)^2`.
 
     The s are the principal stretches over `J^(1/3)` [Ogden 1972]. In the logarithmic strain, whose

@@ -17,6 +17,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.sealed import Sealed
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density
@@ -69,7 +70,7 @@ def stiffness(moduli: Floats, ratios: Floats, shears: Floats) -> Floats:
     return found
 
 
-class _Directed(Hyperelastic):
+class _Directed(Sealed, Hyperelastic):
     """A linear law between strain and stress along axes of the body."""
 
     entry: Entry

@@ -16,6 +16,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.sealed import Sealed
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density, constant
 from anisocontact.bulk.volume import Volume, volume_ratio
@@ -25,7 +26,7 @@ BULK = Parameter(
 )
 
 
-class _Rubber(Hyperelastic):
+class _Rubber(Sealed, Hyperelastic):
     """A rubber by constants of its distortional energy and its bulk modulus."""
 
     entry: Entry

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.arrays import points as points_of
 from anisocontact.base.one_history import OneHistory
+from anisocontact.base.sealed import unsealed
 from anisocontact.base.statuses import OPEN
 from anisocontact.base.typed import typed
 from anisocontact.base.uncopied import Uncopied
@@ -38,7 +39,13 @@ from anisocontact.rigid import MovingSurface, RigidBody
 
 
 @typed
-class Contact(ContactPair, OneHistory, Uncopied):
+class Contact(
+    ContactPair,
+    OneHistory,
+    Uncopied,
+    changing="accepted answer body_stiffness master_yields physical_adhesion physical_penalty "
+    "ran_off without_slip",
+):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
     At every slave point `t = N n + T`, from what is opposite on the master. The
@@ -195,8 +202,9 @@ class Contact(ContactPair, OneHistory, Uncopied):
         """
         model, master, law, options = self._made_of
         parts = make_pair_parts(model, self.slave, master, law, options, seams)
-        ContactPair.__init__(self, model.unknowns, self.slave, self.name, parts, options)
-        self.facet_of_point, self.goes_on = self.slave_points.facet, True
+        with unsealed(self):
+            ContactPair.__init__(self, model.unknowns, self.slave, self.name, parts, options)
+            self.facet_of_point, self.goes_on = self.slave_points.facet, True
 
     @property
     def meshed(self) -> bool:

@@ -24,7 +24,7 @@ POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 
 
 
 @typed
-class Interface(CopiedByArguments):
+class Interface(CopiedByArguments, changing="threads"):
     """A surface with the laws of its contact.
 
     Args:

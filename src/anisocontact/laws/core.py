@@ -19,6 +19,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
+from anisocontact.base.sealed import Sealed
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
@@ -40,7 +41,7 @@ def _named(
 
 
 @typed
-class NormalLaw:
+class NormalLaw(Sealed):
     """Law of the pressure N of the gap.
 
     Args:

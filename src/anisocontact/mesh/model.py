@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, fem, vector_space
+from anisocontact.base.sealed import Sealed
 from anisocontact.base.typed import typed
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
@@ -23,7 +24,7 @@ from anisocontact.mesh.partition import owners
 
 
 @typed
-class Model:
+class Model(Sealed):
     """Mesh, names and the displacement space on it.
 
     Args:
@@ -148,7 +149,7 @@ block.bottom, block.top>
                 raise InputError(f"facet {outside[0]} given, the mesh has 0 to {count - 1}", name)
         order = space.element.basix_element.degree
         model = cls(space.mesh, {body: cells}, named, order, (), idealisation)
-        model.unknowns, model.space = unknowns, unknowns.nodes
+        vars(model).update(unknowns=unknowns, space=unknowns.nodes)
         return model
 
     @cached_property

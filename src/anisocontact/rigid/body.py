@@ -55,7 +55,7 @@ def at_rest() -> Pose:
 
 
 @typed
-class RigidBody(OneHistory):
+class RigidBody(OneHistory, changing="accepted trial turns_freely"):
     """A rigid body that carries the surfaces of one or several contacts.
 
     A point `X` of it goes to `x = c + d + R (X - c)`, `c` the reference point. From one accepted

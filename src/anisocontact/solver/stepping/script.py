@@ -99,7 +99,7 @@ class ContactProblem(Uncopied):
     ) -> None:
         unknowns = script_unknowns(contacts, u.function_space)
         self._bodies, self._key = moved_bodies(contacts), object()
-        self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
+        self.u, self.bcs, self.contacts = u, list(bcs), tuple(contacts)
         form = FormBulk(F, u, J)
         bodies = Bodies(form, unknowns)
         suit(contacts, bodies, [form.finite] * len(contacts))

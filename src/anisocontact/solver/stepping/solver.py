@@ -48,7 +48,7 @@ from anisocontact.solver.terms.step import Step
 
 
 @typed
-class Solver(Uncopied):
+class Solver(Uncopied, changing="place doubtful"):
     """Runs the steps of a problem.
 
     An increment that does not converge is cut into sub-increments, which grow again where they
@@ -96,7 +96,7 @@ class Solver(Uncopied):
     ) -> None:
         warn_of(problem.contacts)
         self.problem = problem
-        self.steps = list(steps)
+        self.steps = tuple(steps)
         if not self.steps:
             raise InputError("no step given, one or more needed", field="steps")
         self.limits = limits or Limits()

@@ -79,7 +79,7 @@ class ProblemParts:
 
     model: Model
     materials: Mapping[str, Material]
-    contacts: list[Contact]
+    contacts: tuple[Contact, ...]
     bulk: LinearBulk | NonlinearBulk
     rigid: RigidBodies
     layout: Layout
@@ -126,7 +126,7 @@ def make_parts(
     return ProblemParts(
         model=model,
         materials=dict(materials),
-        contacts=list(contacts),
+        contacts=tuple(contacts),
         bulk=bulk,
         rigid=rigid,
         layout=layout,

@@ -9,6 +9,7 @@ from typing import Any, override
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
+from anisocontact.base.read_only import ReadOnlyDict
 from anisocontact.base.renamed import RenamedAttribute
 from anisocontact.base.typed import typed
 from anisocontact.base.uncopied import Uncopied
@@ -42,7 +43,7 @@ from anisocontact.solver.terms.tied_faces import Tie
 
 
 @typed
-class Problem(ComposedSystem, Uncopied):
+class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularised reduction"):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
@@ -105,7 +106,7 @@ class Problem(ComposedSystem, Uncopied):
     ) -> None:
         connections = Connections(attached, symmetry, coupled, ties, cyclic)
         self._parts = parts = make_parts(model, materials, contacts, connections, stabilised)
-        self.model, self.materials = model, dict(materials)
+        self.model, self.materials = model, ReadOnlyDict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
         self.supports, self.loads, self.inclined = parts.supports, parts.loads, parts.inclined
