@@ -102,9 +102,9 @@ def _share(imbalance: Imbalance) -> float:
 def test_an_arch_snaps_off_a_die(monkeypatch: pytest.MonkeyPatch) -> None:
     """An arch leaves the die that has pressed it, by a leap of Newton's method and by a flow.
 
-    Requirement: the energy that is set free is left open after a leap, with a warning, and that of
-    a jump after a flow, which leaves nothing open: both the same. Source: both begin and end in the
-    same states. Tolerance: 1e-6, that of the forces.
+    Requirement: the energy that is set free is left open after a leap, with a warning that says so
+    of the snap, and that of a jump after a flow, which leaves nothing open: both the same. Source:
+    both begin and end in the same states. Tolerance: 1e-6, that of the forces.
     """
     released = []
     for flows in (False, True):
@@ -117,6 +117,7 @@ def test_an_arch_snaps_off_a_die(monkeypatch: pytest.MonkeyPatch) -> None:
         (after,) = run
         assert before.contacts["arch.top"]["open"] < after.contacts["arch.top"]["open"] == 80
         assert after.imbalance.large != flows
+        assert flows or after.imbalance.cause == Cause.SNAPPED
         of = "regularisation" if flows else "residual"
         released.append(after.energies[of] - before.energies[of])
     assert released[0] == pytest.approx(released[1], rel=1e-6)

@@ -35,6 +35,11 @@ class Cause(StrEnum):
         "materials yielded or crept within increments, which counts with the stress at their ends: "
         "more of them are needed where they do"
     )
+    SNAPPED = (
+        "more was set free than forces between those at both ends of an increment can work: a body "
+        "snapped to another equilibrium as contact began or ended, or more increments are needed "
+        "where it does"
+    )
     TOUCHED = "contact began or ended within increments, more of them are needed where it does"
     SLID = "sliding began or ended within increments, more of them are needed where it does"
     COARSE = (
@@ -169,6 +174,7 @@ class EnergyWatch:
             Cause.RAN_OFF: ran_off,
             Cause.JUMPED: jumped,
             Cause.FLOWED: flowed,
+            Cause.SNAPPED: touched and left > BELIEVED * self._problem.missed,
             Cause.TOUCHED: touched,
             Cause.SLID: slid,
         }

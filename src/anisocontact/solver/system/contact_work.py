@@ -131,6 +131,18 @@ class ContactWork:
         missed = float((along - mean).sum())
         return missed if np.isfinite(missed) else 0.0
 
+    def missed(self, ends: EndsWork) -> float:
+        """Work that the means of the ends have missed at most, force times length.
+
+        Args:
+            ends: Work of supports and loads, by its ends; that on rigid bodies is added.
+
+        Returns:
+            Infinite with springs whose anchors move.
+        """
+        most = self._comm.allreduce(self._of_rigid().missed)
+        return np.inf if self._parts.attached else float(ends.missed + most)
+
     def _prescribed_alone(self, nodal: Floats) -> bool:
         """Whether supports and prescribed motions alone drive the bodies."""
         parts = self._parts

@@ -75,6 +75,7 @@ class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularis
         dt: Time increment to there.
         begun: How many steps have begun.
         regularised: Work of the last accepted increment if viscous regularisation led to it.
+        missed: What its ends miss at most of the work in it; infinite where that is not known.
         evaluation: Forces at the state of the last evaluation.
 
     Raises:
@@ -108,10 +109,9 @@ class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularis
         self._parts = parts = make_parts(model, materials, contacts, connections, stabilised)
         self.model, self.materials = model, ReadOnlyDict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
-        self.layout, self.attached = parts.layout, parts.attached
+        self.layout, self.attached, self.sides = parts.layout, parts.attached, parts.sides
         self.supports, self.loads, self.inclined = parts.supports, parts.loads, parts.inclined
-        self.sides, self.stabilisation = parts.sides, parts.stabilisation
-        self._aid = parts.stabilisation
+        self._aid = self.stabilisation = parts.stabilisation
         self.assembly = assembly = parts.assembly
         self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
@@ -120,8 +120,7 @@ class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularis
         self._bodies = Configuration(parts)
         self.rotations = Rotations(model, materials)
         self.evaluation = Evaluation(assembly, self._bodies)
-        self.load_factor = self.dt = 0.0
-        self.begun = 0
+        self.load_factor, self.dt, self.begun, self.missed = 0.0, 0.0, 0, float("inf")
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
         self.regularised: EndsWork | None = None
@@ -337,9 +336,10 @@ class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularis
         ends, nodal = self.reduction.commit(x), self.reduction.nodal(x)
         ends += EndsWork.of(*self.assembly.bodies.heating(nodal))
         self.regularised = ends if self.stabilisation.regularisation.active else None
+        self.missed = self._contact_work.missed(ends)
         work = ends.mean + self._contact_work.of_overlaps()
-        so_far = self._accepted.work + work
-        work += self._contact_work.beyond_the_means(nodal, self.dt, so_far, ends)
+        beyond, so_far = self._contact_work.beyond_the_means, self._accepted.work + work
+        work += beyond(nodal, self.dt, so_far, ends)
         self._accepted.contact = self._contact_work.forces(nodal)
         self._accepted.work += work + self.assembly.terms.accept(nodal)
         x.copy(self._accepted.x)
