@@ -43,7 +43,9 @@ from anisocontact.solver.terms.tied_faces import Tie
 
 
 @typed
-class Problem(ComposedSystem, Uncopied, changing="load_factor dt begun regularised reduction"):
+class Problem(
+    ComposedSystem, Uncopied, changing="load_factor dt begun regularised missed reduction"
+):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
