@@ -108,6 +108,21 @@ def test_an_amplitude_of_other_times_is_told(case, capsys, total, told):
     assert all("step 'on'.pressure.\"bar.top\": its amplitude" in line for line in lines)
 
 
+def test_what_nothing_names_is_told(case, capsys):
+    """Requirement: a surface, amplitude or path that is defined and not named again is a warning.
+
+    Source: by hand. A die that no contact had as its master was passed through without a word.
+    """
+    plane = '[surface.die]\nshape = "plane"\npoint = [0, 0, 9]\nnormal = [0, 0, -1]\n'
+    late = '[amplitude.late]\nkind = "table"\ntime = [0, 2]\nvalue = [0, 1]\n'
+    way = '[path.way]\nkind = "circle"\nradius = 1\n'
+    unnamed = "\n".join([plane, late, way, "[amplitude.wave]"])
+    case.write_text(CASE.replace("[amplitude.wave]", unnamed))
+    assert main(["check", str(case)]) == 0
+    told = [s for s in capsys.readouterr().out.splitlines() if s.startswith("warning")]
+    assert [s.split()[1] for s in told[:3]] == ["surface.die:", "amplitude.late:", "path.way:"]
+
+
 def test_another_file_is_another_run(case, capsys):
     """Requirement: a function that has changed is not gone on with."""
     out = case.parent / "out"

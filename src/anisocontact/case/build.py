@@ -28,6 +28,7 @@ from anisocontact.case.read import CaseFile
 from anisocontact.case.steps import steps_of
 from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
+from anisocontact.case.unused import unused
 from anisocontact.contact import Contact
 from anisocontact.interface import TangentialLaw
 from anisocontact.mesh import Model
@@ -96,6 +97,7 @@ class Built:
         size, gravity = float((high - low).max()), accelerations(weights)
         found = doubts(case.units, young, densities, size, gravity)
         found += [*self.torn, *_untimed(case), *idle_amplitudes(case), *cut_paths(case)]
+        found += unused(self.file.text)
         found += _at_points(case, self.problem)
         return found + [
             f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'
