@@ -372,6 +372,45 @@ def test_nobody_writes_into_what_has_been_read(
         write(made)
 
 
+class Counting(anisocontact.LinearElastic):
+    """A material of a script, which counts how often it is asked."""
+
+    def __init__(self, **parameters: float) -> None:
+        super().__init__(**parameters)
+        self.asked = 0
+
+    def stress(self, u: Any) -> Any:
+        self.asked += 1
+        return super().stress(u)
+
+
+def test_classes_of_a_script_write_what_is_their_own(made: Made) -> None:
+    """Requirement: what is derived from a class of the package has values of its own, and is told
+    of those of the package."""
+    counting = Counting(E=210e3, nu=0.3)
+    anisocontact.Problem(made.problem.model, {"block": counting})
+    assert counting.asked > 0
+    with pytest.raises(InputError, match=r"^Counting\.E: read only"):
+        counting.E = 70e3  # type: ignore[attr-defined]
+
+
+def test_a_copy_is_made_of_what_was_given_then() -> None:
+    """Requirement: a copy of a law is that law, whatever was written later into what it was given.
+
+    Source: by hand. A copy of an adhesion of 1000 had the 5 that was written into its array.
+    """
+    stiffness, marks = np.array([1e3, 2e3]), [1.0, 0.0, 0.0]
+    directions = anisocontact.make_directions("constant", vector=marks)
+    adhesion = anisocontact.Adhesion(stiffness=stiffness, directions=directions)
+    stiffness[:], marks[1] = 5.0, 1.0
+    for copied in (copy.copy(adhesion), pickle.loads(pickle.dumps(adhesion))):
+        assert copied.named[1]["stiffness"] == [1e3, 2e3]
+        assert copied.directions.named == adhesion.directions.named
+    body = anisocontact.RigidBody("tool", (0, 0, 0))
+    with pytest.raises(ValueError, match="read-only"):
+        body.reference[0] = 1.0
+
+
 def test_what_is_followed_may_be_written(made: Made) -> None:
     """Requirement: methods may be replaced, and what a class lets change; a copy is as its like."""
     made.contact.physical_adhesion = True

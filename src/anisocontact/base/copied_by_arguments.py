@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Self
 
+import numpy as np
+
 from anisocontact.base.sealed import Sealed
 
 
@@ -25,7 +27,7 @@ class CopiedByArguments(Sealed):
     def __new__(cls, *args: Any, **kwargs: Any) -> Self:
         """Keep the arguments."""
         new = super().__new__(cls)
-        new._made = args, kwargs
+        new._made = tuple(map(_kept, args)), {name: _kept(one) for name, one in kwargs.items()}
         return new
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -43,6 +45,17 @@ class CopiedByArguments(Sealed):
         pairs = zip([*parts, *named.values()], [*args, *kwargs.values()], strict=True)
         same = all(new is old for new, old in pairs)
         return self if same else type(self)(*parts, **named)
+
+
+def _kept(argument: Any) -> Any:
+    """An argument, with copies of lists, dictionaries and arrays, into which a script may write."""
+    if isinstance(argument, np.ndarray):
+        return argument.copy()
+    if type(argument) is list:
+        return [_kept(one) for one in argument]
+    if type(argument) is dict:
+        return {name: _kept(one) for name, one in argument.items()}
+    return argument
 
 
 def _replaced(part: Any, instead: Mapping[int, Any]) -> Any:

@@ -6,6 +6,7 @@ import inspect
 from abc import ABCMeta
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, ClassVar, cast
 
 from anisocontact.base.errors import InputError
@@ -30,7 +31,7 @@ class Sealed(metaclass=_Sealing):
     """What refuses to be written into once it is made: what it was made of has been read by then.
 
     Private names are not refused, nor methods, nor those that a class says are `changing`, in one
-    text.
+    text. A class that a script derives may write what is its own.
 
     Example:
         >>> class Spring(Sealed, changing="length"):
@@ -70,7 +71,26 @@ class Sealed(metaclass=_Sealing):
             raise InputError(text, field=f"{kind}.{name}")
 
     def _may_change(self, name: str) -> bool:
-        return name in self._changing or callable(getattr(type(self), name, None))
+        kind = type(self)
+        if name in self._changing or callable(getattr(kind, name, None)):
+            return True
+        return not _is_own(kind) and name not in _known(kind)
+
+
+def _is_own(kind: type[Any]) -> bool:
+    """Whether a class is one of this package, and not what a script has derived from one."""
+    return kind.__module__.partition(".")[0] == __name__.partition(".")[0]
+
+
+@cache
+def _known(kind: type[Any]) -> frozenset[str]:
+    """What a script's class has of the classes of this package: arguments, and what they define."""
+    own = [base for base in kind.__mro__ if _is_own(base)]
+    names = {
+        name for base in own for name in inspect.signature(cast(Any, base).__init__).parameters
+    }
+    names |= {parameter.name for parameter in getattr(getattr(kind, "entry", 0), "parameters", ())}
+    return frozenset(names.union(*map(vars, own)))
 
 
 @contextmanager

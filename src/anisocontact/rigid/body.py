@@ -15,6 +15,7 @@ from anisocontact.base.errors import InputError, within
 from anisocontact.base.load_curve import LoadCurve, PrescribedValue, check_prescribed, history_of
 from anisocontact.base.one_history import OneHistory
 from anisocontact.base.parameters import OfDegrees
+from anisocontact.base.read_only import read_only
 from anisocontact.base.typed import is_number, typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
@@ -101,7 +102,7 @@ class RigidBody(OneHistory, changing="accepted trial turns_freely"):
         if point.shape != (3,) or not np.isfinite(point).all():
             raise InputError(f"{reference!r} given, needs three finite numbers", "reference")
         self.name = name
-        self.reference = point
+        self.reference = read_only(point)
         self.free, self.turns_freely = free, False
         self.springs: Floats = np.zeros(6)
         for component, value in (springs or {}).items():
