@@ -83,7 +83,7 @@ class LinearBulk:
         self.stiffness.mult(u, self._force)
         return self._force
 
-    def follow(self, u: Vec | None, by_penalties: bool = False) -> bool:
+    def follow(self, u: Vec | None, in_full_alone: bool = False) -> bool:
         """Nothing follows: pressures are linear in the displacement."""
         return False
 

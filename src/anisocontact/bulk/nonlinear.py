@@ -245,20 +245,21 @@ class NonlinearBulk:
         self._pressures.add_product(x, out)
         return out
 
-    def follow(self, u: Vec | None, by_penalties: bool = False) -> bool:
+    def follow(self, u: Vec | None, in_full_alone: bool = False) -> bool:
         """Let pressures in tangents follow the corrections from a state on, where volume is kept.
 
         Args:
             u: Displacement of the nodes this rank owns, length; those of now count again if None.
-            by_penalties: Whether penalties press: they follow corrections in full alone then.
+            in_full_alone: Whether they do so only where corrections are to be taken in full.
 
         Returns:
             Whether corrections are to be taken in full, as of `CellPressures`.
         """
-        if self._pressures.of and (self._pressures.in_full or not by_penalties):
+        followed = self._pressures.followed
+        if followed is not None and (self._pressures.in_full or not in_full_alone):
             if u is not None:
                 self._set(u)
-            self._pressures.follow_from(u is not None)
+            followed.follow(u is not None)
         return self._pressures.in_full
 
     def set_time(self, dt: float) -> None:

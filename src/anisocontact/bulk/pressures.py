@@ -35,6 +35,7 @@ from anisocontact.base.fenicsx import Mat, Vec, assemble_into, basix, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.base.form_rows import create_stiffness
 from anisocontact.bulk.expansion import Heated
+from anisocontact.bulk.followed_pressures import FollowedPressures
 from anisocontact.bulk.volume import volume_of
 from anisocontact.mesh import Model
 
@@ -95,6 +96,7 @@ class CellPressures:
 
     Attributes:
         of: The pressure of each of these bodies by name, a DOLFINx function.
+        followed: Pressures that follow corrections; None where nothing keeps its volume apart.
         in_full: Whether corrections are to be taken in full, without a line search.
         hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
         hardnesses: The same of every pressure this rank owns, the mean of its nodes, (pressures,).
@@ -115,9 +117,7 @@ class CellPressures:
         self.of: dict[str, Any] = {}
         self.in_full, self.hardness = False, 0.0
         self.hardnesses: Floats = np.zeros(0)
-        self._from: tuple[Vec, Floats] | None = None
-        self._begins = False
-        self._in_tangent: Floats | None = None
+        self.followed: FollowedPressures | None = None
         mass, change = self._forms(model, laws, dx, heated)
         if not self.of:
             return
@@ -129,6 +129,9 @@ class CellPressures:
         self._inverse: Mat = self._mass.duplicate()
         self._invert()
         self._stiffness: Mat = self._inverse.ptap(self._slope)
+        self.followed = FollowedPressures(
+            u, self._slope, self._changes, self._near, self._of_pressures
+        )
 
     def _forms(
         self, model: Model, laws: Mapping[str, Any], dx: Any, heated: Mapping[str, Heated]
@@ -166,7 +169,8 @@ class CellPressures:
         if self._rises:
             _assemble_anew(self._mass, self._mass_form)
             self._invert()
-        self._take(self._changes())
+        assert self.followed is not None
+        self._take(self.followed.of_residual(self._changes()))
 
     def energy(self) -> float:
         """`K/2 <Pe, Pe>` on the cells of this rank at the displacement of now."""
@@ -192,7 +196,8 @@ class CellPressures:
 
     def strains(self) -> Floats:
         """Mean change of volume, over volume, of the pressures in tangents, (pressures,)."""
-        change = self._changes() if self._in_tangent is None else self._in_tangent
+        kept = None if self.followed is None else self.followed.in_tangent
+        change = self._changes() if kept is None else kept
         sums, extents = np.abs(change.sum(axis=(1, 2))), self._extents
         by_cell = np.divide(sums, extents, out=np.zeros_like(sums), where=extents > 0.0)
         return np.repeat(by_cell, self._width)
@@ -207,8 +212,10 @@ class CellPressures:
         if not self.of:
             return
         if not again:
-            self._assemble_slope()
+            _assemble_anew(self._slope, self._slope_form)
             self._inverse.ptap(self._slope, result=self._stiffness)
+        if self.followed is not None:
+            self.followed.linearise()
         add_matrix(out, self._stiffness)
         out.assemble()
 
@@ -294,49 +301,22 @@ class CellPressures:
         beyond.diagonalScale(L=factors)
         return beyond.ptap(self._slope)
 
-    def follow_from(self, begin: bool) -> None:
-        """Let tangents have pressures that corrections lead to from those of here on, or of now.
-
-        Args:
-            begin: Whether they do; the first tangent has the pressures of here as of `_first`.
-        """
-        self._from = None
-        self._begins = begin
-        if begin:
-            self._from = self._here()
-
     @contextmanager
     def predicted(self) -> Iterator[None]:
         """The pressures that the last correction has led to, if they follow; collective."""
-        if self._from is None:
-            self._in_tangent = None
+        if self.followed is None or not self.followed.active:
             yield
             return
-        u, change = self._from
         now = self._pressure.x.array.copy()
-        self._in_tangent = change
-        if self._begins:
-            self._in_tangent = self._first(change)
-        else:
-            more = self._slope.createVecLeft()
-            self._slope.mult(self._u.x.petsc_vec - u, more)
-            self._in_tangent = change + more.array_r.reshape(change.shape)
-        self._begins = False
-        self._take(self._in_tangent)
+        self._take(self.followed.for_tangent())
         yield
         self._pressure.x.array[:] = now
 
-    def _first(self, accepted: Floats) -> Floats:
-        """Changes of volume of the first tangent: those of here if all are near, collective.
-
-        Args:
-            accepted: Those of the accepted state.
-        """
-        here = self._changes()
+    def _near(self, here: Floats, accepted: Floats) -> bool:
+        """Whether pressures of all cells are near those of another state, see `NEAR`."""
         away = self.hardnesses * np.abs(here - accepted).reshape(-1)
         far = bool((away > NEAR * np.repeat(self._extents, self._width)).any())
-        comm = self._pressure.function_space.mesh.comm
-        return accepted if comm.allreduce(int(far)) else here
+        return not self._pressure.function_space.mesh.comm.allreduce(int(far))
 
     def _mean_of_nodes(self, values: Floats) -> Floats:
         """Mean of values of displacements over those that change a volume, by how much they do."""
@@ -353,6 +333,10 @@ class CellPressures:
         total: Floats = found.array_r
         return np.divide(sums, total, out=np.zeros_like(sums), where=total > 0.0)
 
+    def _of_pressures(self) -> Floats:
+        """`hardnesses` in the shape of `_changes`."""
+        return self.hardnesses.reshape(-1, self._width, 1)
+
     def _changes(self) -> Floats:
         """`<q, e>` of the cells of this rank, (cells, pressures of a cell, 1)."""
         return self._of_this_rank(self._change)
@@ -366,16 +350,6 @@ class CellPressures:
         """Pressures of changes of volume, see `_changes`."""
         self._pressure.x.array[: change.size] = (self._blocks @ change).reshape(-1)
         self._pressure.x.scatter_forward()
-
-    def _here(self) -> tuple[Vec, Floats]:
-        """Displacement and changes of volume of now."""
-        return self._u.x.petsc_vec.copy(), self._changes()
-
-    def _assemble_slope(self) -> None:
-        """Derivative of the changes of volume by the displacement of now."""
-        _assemble_anew(self._slope, self._slope_form)
-        if self._from is not None:
-            self._from = self._here()
 
     def _invert(self) -> None:
         """Inverse of `<q, p> / K`, in which no two cells meet."""

@@ -160,7 +160,8 @@ class Newton:
         Returns:
             What came of it.
         """
-        with self._problem.corrected() as full:
+        usual = self._line_search == PETSc.SNESLineSearch.Type.BT
+        with self._problem.corrected(usual and not full_steps) as full:
             self._iteration.damp_by(damping, full)
             return self._solve(x, full or full_steps)
 
@@ -169,7 +170,9 @@ class Newton:
         spent = 0
         last = x.copy()
         while True:
-            self._search_along(full_steps or self._problem.contact_term.simultaneous)
+            contacts = self._problem.contact_term
+            self._iteration.mixes = self._mixed and not full_steps
+            self._search_along(full_steps or contacts.simultaneous or self._iteration.mixes)
             result = self._equilibrium(x)
             spent += result.iterations
             try:
@@ -186,6 +189,13 @@ class Newton:
                 last.copy(x)
             else:
                 x.copy(last)
+
+    @property
+    def _mixed(self) -> bool:
+        """Whether penalties press bodies whose pressures follow corrections."""
+        followed = self._problem.followed
+        follows = followed is not None and followed.active
+        return follows and self._problem.contact_term.by_penalties
 
     def _unstable(self) -> bool:
         """Whether the last tangent has a negative eigenvalue, as far as found; collective."""

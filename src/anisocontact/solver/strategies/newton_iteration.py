@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.backtracking import Backtracking
+from anisocontact.solver.strategies.mixed_search import MixedSearch
 from anisocontact.solver.strategies.residual_history import PATIENCE, ResidualHistory
 from anisocontact.solver.strategies.symmetric import check_symmetric
 from anisocontact.solver.strategies.system import System
@@ -24,13 +25,15 @@ class NewtonIteration:
 
     Attributes:
         search: The line search where multipliers follow.
+        mixed: That where pressures do, and penalties press.
+        mixes: Whether it is taken.
         patience: Corrections after which only a residual that falls is waited for.
     """
 
     def __init__(self, system: System, on_iteration: Callable[[int, float], None]) -> None:
         self._system, self._on_iteration = system, on_iteration
         self._damping: Callable[[], float] | None = None
-        self.search = Backtracking(system)
+        self.search, self.mixed, self.mixes = Backtracking(system), MixedSearch(system), False
         self.patience: float = PATIENCE
         self._history = ResidualHistory(system.contact_term, self.patience)
 
@@ -52,6 +55,7 @@ class NewtonIteration:
         """Take it that iterations begin, with the multipliers as they are."""
         self._history = ResidualHistory(self._system.contact_term, self.patience)
         self.search.begin()
+        self.mixed.begin()
 
     def function(self, _: SNES, x: Vec, f: Vec) -> None:
         """Write the residual at `x` into `f`, for PETSc."""
@@ -80,9 +84,10 @@ class NewtonIteration:
     def damp(self, x: Vec, direction: Vec) -> bool:
         """Shorten a correction, for PETSc; whether it was."""
         share = 1.0 if self._damping is None else self._damping()
-        if self._system.contact_term.simultaneous:
+        search = self.search if self._system.contact_term.simultaneous else None
+        if search is not None or self.mixes:
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                share = self.search.share(x, direction, share)
+                share = (search or self.mixed).share(x, direction, share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0
@@ -111,6 +116,8 @@ class NewtonIteration:
         small = balance.reached and all(field.small(rtol, atol) for field in fields)
         if small and contacts.consistent():
             return reasons.CONVERGED_FNORM_RELATIVE
+        if self.mixes and self.mixed.stuck:
+            return reasons.DIVERGED_LINE_SEARCH
         searching = snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
         diverged = self._history.divergence(searching, self._damping is not None)
         return reasons.ITERATING if diverged is None else diverged

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.bulk.followed_pressures import FollowedPressures
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 
@@ -54,8 +55,18 @@ class System(Protocol):
         """
         ...
 
-    def corrected(self) -> AbstractContextManager[bool]:
-        """Around Newton's method: whether corrections are to be taken in full."""
+    @property
+    def followed(self) -> FollowedPressures | None:
+        """Pressures that follow corrections, if there are any."""
+        ...
+
+    def corrected(self, searching: bool) -> AbstractContextManager[bool]:
+        """Around Newton's method: whether corrections are to be taken in full.
+
+        Args:
+            searching: Whether it has a line search of ours, without which pressures of bodies that
+                penalties press do not follow corrections.
+        """
         ...
 
     def improve(self, x: Vec) -> bool:

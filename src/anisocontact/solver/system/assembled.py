@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager, nullcontext
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
+from anisocontact.bulk.followed_pressures import FollowedPressures
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
@@ -27,7 +28,12 @@ class AssembledSystem:
     _balance: ForceBalance
     _aid: Stabilisation | None = None
 
-    def corrected(self) -> AbstractContextManager[bool]:
+    @property
+    def followed(self) -> FollowedPressures | None:
+        """Pressures that follow corrections, if there are any."""
+        return None
+
+    def corrected(self, searching: bool) -> AbstractContextManager[bool]:
         """Around Newton's method: whether corrections are to be taken in full."""
         return nullcontext(False)
 

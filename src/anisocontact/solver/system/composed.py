@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 
 from anisocontact.base.array_types import Ints
 from anisocontact.bulk import LinearBulk, NonlinearBulk
+from anisocontact.bulk.followed_pressures import FollowedPressures
 from anisocontact.mesh import Model
 from anisocontact.solver.system.reported import ReportedSystem
 from anisocontact.solver.terms.constraints import Constraints
@@ -52,6 +53,17 @@ class ComposedSystem(ReportedSystem):
     def linear(self) -> bool:
         """Whether all bodies are linear."""
         return isinstance(self.bulk, LinearBulk)
+
+    @property
+    def in_full(self) -> bool:
+        """Whether corrections are taken in full, without a line search, see `corrected`."""
+        volume = self.bulk.volume
+        return volume is not None and volume.in_full and not self.linear
+
+    @property
+    @override
+    def followed(self) -> FollowedPressures | None:
+        return self.bulk.volume.followed if self.bulk.volume is not None else None
 
     def constrained(self) -> Ints:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""

@@ -242,15 +242,10 @@ class Problem(
         """
         return self.evaluation.evaluate(x).residual
 
-    @property
-    def in_full(self) -> bool:
-        """Whether corrections are taken in full, without a line search, see `corrected`."""
-        volume = self.bulk.volume
-        return volume is not None and volume.in_full and not self.linear
-
     @override
-    def corrected(self) -> AbstractContextManager[bool]:
-        return self.assembly.bodies.followed(self._bodies.nodal, self.contact_term.by_penalties)
+    def corrected(self, searching: bool) -> AbstractContextManager[bool]:
+        in_full_alone = not searching and self.contact_term.by_penalties
+        return self.assembly.bodies.followed(self._bodies.nodal, in_full_alone)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.

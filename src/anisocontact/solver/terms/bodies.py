@@ -166,10 +166,10 @@ class Bodies(Term):
         return {"elastic": self.energy(u)} | self.dissipated()
 
     @contextmanager
-    def followed(self, u: Floats, by_penalties: bool) -> Iterator[bool]:
+    def followed(self, u: Floats, in_full_alone: bool) -> Iterator[bool]:
         """Around corrections that begin at a state: whether to take them in full, see `follow`."""
         try:
-            yield self.bulk.follow(self._owned(u), by_penalties)
+            yield self.bulk.follow(self._owned(u), in_full_alone)
         finally:
             self.bulk.follow(None)
 

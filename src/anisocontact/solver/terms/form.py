@@ -69,7 +69,7 @@ class FormBulk:
         assemble_force(self._residual, self._force)
         return self._force
 
-    def follow(self, u: Vec | None, by_penalties: bool = False) -> bool:
+    def follow(self, u: Vec | None, in_full_alone: bool = False) -> bool:
         """Nothing follows: pressures are among the unknowns."""
         return False
 
