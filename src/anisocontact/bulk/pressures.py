@@ -13,8 +13,8 @@ has against changes of shape, as in rubber, or in metal that flows. So tangents 
 that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed form in
 which p is an unknown of its own. The first of them has that of the accepted state, unless that of
 the iterate is near: an extrapolated state changes the volume by the square of the increment, which
-K makes a pressure of, too. Where penalties press it is so only if K is larger by orders: a residual
-with stiff ones has to fall with every correction, and those of a mixed form let it rise.
+K makes a pressure of, too. A line search by the residual of displacements would see that pressure
+of second order again: where penalties press there is one of the mixed form, see `MixedSearch`.
 """
 
 from __future__ import annotations
