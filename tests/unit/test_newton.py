@@ -27,7 +27,7 @@ class Valley:
     """
 
     balance = replace(ForceBalance.none(2), force_scale=1.0)
-    contact_term = Contacts([])
+    contact_term, followed = Contacts([]), None
     comm = MPI.COMM_SELF
 
     def __init__(self, steepness: float) -> None:
@@ -51,7 +51,7 @@ class Valley:
         out.assemble()
         return False
 
-    def corrected(self) -> AbstractContextManager[bool]:
+    def corrected(self, _: bool) -> AbstractContextManager[bool]:
         return nullcontext(False)
 
     def improve(self, _: Vec) -> bool:
