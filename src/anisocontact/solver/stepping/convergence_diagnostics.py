@@ -150,6 +150,15 @@ def _inverted(problem: Problem) -> Iterator[Culprit]:
         yield Culprit("inverted", _place(middle), "the cell here is inverted (det F <= 0)")
 
 
+def folded_cells(problem: Problem) -> dict[str, tuple[int, tuple[float, float, float]]]:
+    """Cells folded at a corner, over all ranks: how many, and where the first is, by body."""
+    found: dict[str, list[Floats]] = {}
+    for some in problem.comm.allgather(problem.folded_cells()):
+        for name, middles in some.items():
+            found.setdefault(name, []).extend(middles)
+    return {name: (len(middles), _place(middles[0])) for name, middles in found.items()}
+
+
 def _worst(problem: Problem, residual: Floats) -> Iterator[tuple[float, Culprit]]:
     """The node of this rank with the largest residual, and how large it is."""
     x = problem.model.space.tabulate_dof_coordinates()

@@ -47,6 +47,12 @@ UNSTABLE = (
     "eigenvalue, and the least disturbance leads to another one; a small load to one side while it "
     "is still stable leads there"
 )
+#: What is said of cells that are folded between the points where their material is asked.
+FOLDED = (
+    "body {name!r}: {cells} folded over at a corner (det F <= 0 there), the first at {place}: no "
+    "body deforms so, and forces around it are none of its material; round off an edge "
+    "that is pressed or dragged there, or take cells of order 1"
+)
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4
 
@@ -117,6 +123,10 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for group, depth in accepted.crossed.items():
         name = group.partition(".")[0]
         yield f"crossed {group}", f"body {name!r} {CROSSED.format(group=group, depth=depth)}"
+    for name, (count, place) in accepted.folded.items():
+        cells = "a cell is" if count == 1 else f"{count} cells are"
+        at = "({:.4g}, {:.4g}, {:.4g})".format(*place)
+        yield f"folded {name}", FOLDED.format(name=name, cells=cells, place=at)
     for name, count in accepted.undetermined.items():
         points = "slave point touches" if count == 1 else "slave points touch"
         yield f"undetermined {name}", f"contact {name!r}: {count} {points} {HELD}"

@@ -81,6 +81,7 @@ class Accepted:
         without_slip: Slave points that came to their master in it, or over its border, and carry
             no friction, by name of the contact; contacts without any are left out.
         crossed: How far bodies have gone through their planes of symmetry, by facet group, length.
+        folded: Cells with a corner where `det F <= 0`, how many and where the first is, by body.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -122,6 +123,7 @@ class Accepted:
     faces: dict[str, list[TurnedFace]] = field(default_factory=dict)
     without_slip: dict[str, WithoutSlip] = field(default_factory=dict)
     crossed: dict[str, float] = field(default_factory=dict)
+    folded: dict[str, tuple[int, tuple[float, float, float]]] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""
     missed: str = ""

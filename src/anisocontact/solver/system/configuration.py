@@ -67,3 +67,7 @@ class Configuration:
         Cells at small strain do not count: their equations know no det F.
         """
         return self._cells.inverted(self.nodal)
+
+    def folded(self) -> dict[str, Floats]:
+        """Middles of those folded at a corner, by body, as `inverted`."""
+        return self._cells.folded(self.nodal)

@@ -97,6 +97,10 @@ class ReportedSystem(AssembledSystem):
         """Middles of the cells of this rank that the last evaluation inverted, (n, 3)."""
         return self._bodies.inverted()
 
+    def folded_cells(self) -> dict[str, Floats]:
+        """Middles of those that it folded at a corner, by body, (n, 3)."""
+        return self._bodies.folded()
+
     def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
 
