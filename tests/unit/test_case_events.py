@@ -76,7 +76,11 @@ HELD = {
     ("old", "new", "line"),
     [
         ('event = "sliding"', 'event = "slides"', "step[1].until.event: "),
-        ('"block.bottom", event', '"block.side", event', "given; did you mean 'block.bottom'?"),
+        (
+            '"block.bottom", event',
+            '"block.side", event',
+            "given; allowed: block.bottom on floor, block.bottom",
+        ),
         ('"block.bottom", event', '"x", event', "given; allowed: block.bottom on floor, "),
         ('reaction = "block.top"', 'reaction = "block.left"', "what holds the bodies: block.top"),
         (REACTION, 'probe = "mid"', "step[0].until.probe: "),

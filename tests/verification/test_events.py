@@ -292,7 +292,7 @@ def test_mistakes(given: dict[str, Any], text: str):
 @pytest.mark.parametrize(
     ("until", "text"),
     [
-        (Until(contact="block.side", event="lost"), "did you mean 'block.bottom'"),
+        (Until(contact="block.side", event="lost"), "allowed: block.bottom$"),
         (Until(displacement="block.side", value=1.0), "block.side"),
         (Until(reaction="block.left", value=1.0), "what holds the bodies: block.top"),
     ],

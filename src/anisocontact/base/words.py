@@ -151,6 +151,9 @@ def meant(word: str, known: Iterable[str]) -> str | None:
 def hint(name: str, known: Collection[str], others: str = "there are") -> str:
     """The end of a message: the known name that one of the user's own is spelt like, else all.
 
+    Of the groups of a body, "body.group", those of the same body count where there are some, and
+    what is spelt alike is the group.
+
     Args:
         name: What was written.
         known: The names there are.
@@ -159,9 +162,19 @@ def hint(name: str, known: Collection[str], others: str = "there are") -> str:
     Example:
         >>> hint("blok", ["block", "base"]), hint("x", ["block", "base"])
         ("did you mean 'block'?", 'there are: block, base')
+        >>> hint("block.front", ["block.left", "block.top", "base.left"])
+        'there are: block.left, block.top'
     """
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return f"did you mean {near[0]!r}?" if near else f"{others}: {', '.join(known) or 'none'}"
+    body, dot, group = name.rpartition(".")
+    own = [one for one in known if dot and one.rpartition(".")[0] == body]
+    if own:
+        near = difflib.get_close_matches(group, [one[len(body) + 1 :] for one in own], n=1)
+        near = [f"{body}.{one}" for one in near]
+    else:
+        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return (
+        f"did you mean {near[0]!r}?" if near else f"{others}: {', '.join(own or known) or 'none'}"
+    )
 
 
 def elsewhere(word: str) -> str | None:

@@ -281,7 +281,8 @@ def _contact(problem: Problem, until: Until, field: str) -> Contact:
     if len(found) == 1:
         return found[0]
     known = [contact.name for contact in problem.contacts]
-    near = hint(until.contact or "", [*known, *(c.slave for c in problem.contacts)], "allowed")
+    names = dict.fromkeys([*known, *(c.slave for c in problem.contacts)])
+    near = hint(until.contact or "", names, "allowed")
     raise InputError(f"{until.contact!r} given; {near}", f"{field}.contact")
 
 
