@@ -79,6 +79,7 @@ class MortarMaster(MeshedMaster):
     ) -> None:
         self._points = points
         self._self_contact: SelfContactSides | None = None
+        normals: Floats | None = None
         if self_contact:
             normals = outward_normals(sides.searched, sides.reference)
             self._self_contact = SelfContactSides(points, sides.gathered, normals)
@@ -88,7 +89,7 @@ class MortarMaster(MeshedMaster):
         self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
         self._prescribed = PrescribedNodes(self._gathered)
-        self._front = CrackFront(sides, points)
+        self._front = CrackFront(sides, points, normals)
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
