@@ -347,3 +347,23 @@ def test_bodies_that_just_touch_leave_nothing_open(strategy: str) -> None:
     }
     for accepted in Solver(problem, [Step("hold", 2, still)], strategy=strategy).run():
         assert accepted.imbalance.share == 0.0
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+@pytest.mark.parametrize("traction", [10.0, 1e-3])
+def test_a_load_on_the_face_that_rests_leaves_nothing_open(traction: float, strategy: str) -> None:
+    """A block on a plane that is loaded where it rests, on the face below, and deforms nowhere.
+
+    Requirement: nothing is said of its balance. Source: loads are borne where they act, by
+    multipliers, so that no work is done; what Newton's method leaves out of balance, a share of
+    1e-8 of the forces at most, moved it by 1e-13, and the load times that was 100 % of the work.
+    """
+    model = build_mesh([Body("block", BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2)))])
+    plane = make_surface("plane", point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
+    contact = Contact(model, "block.bottom", plane, Friction(coefficients=0.3))
+    elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
+    problem = Problem(model, {"block": elastic}, [contact])
+    load = Step("load", 2, traction={"block.bottom": {"z": -traction}})
+    for accepted in Solver(problem, [load], strategy=strategy).run():
+        assert accepted.contacts[contact.name]["open"] == 0
+        assert accepted.imbalance.share == 0.0

@@ -16,6 +16,7 @@ from anisocontact.base.array_types import Floats, Ints
 from anisocontact.bulk import small_strain
 from anisocontact.contact import initial_overlap
 from anisocontact.interface import STATUS
+from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.contact_work import BELIEVED
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
@@ -189,13 +190,17 @@ class EnergyWatch:
         return 0.0 if residual <= self._rounded() else residual / max(self._work, held)
 
     def _rounded(self) -> float:
-        """What floating point leaves of energies, over all ranks.
+        """What floating point and the tolerance of forces leave of energies, over all ranks.
 
         Positions are known to a share of the size of the mesh. Forces are off by what is left of
         nodes moved alone by that, `K_ii x_i`, and of `Term.lever`; these do work on displacements,
         or where nothing has moved on what positions are off by themselves. At finite strain
         energies of F = I + grad(u) are rounded too, so that what has hardly moved counts by the
         size of its cells; those of small strains are not.
+
+        Forces of contact do work as well on the displacements that Newton's method leaves open, a
+        share of `TOLERANCE` of those that they give to nodes moved alone, `f_i / K_ii`. Beside what
+        they deform bodies by that is nothing; where loads on the same nodes bear them it is all.
         """
         bulk, assembly = self._problem.bulk, self._problem.assembly
         diagonal, extent = bulk.diagonal.array_r, assembly.layout.unknowns.extent
@@ -205,7 +210,10 @@ class EnergyWatch:
         moved += _ROUND_OFF * extent
         forces = float(diagonal @ ((extent + moved) * moved))
         held = assembly.terms.lever() * float(np.linalg.norm(moved))
-        return float(self._problem.comm.allreduce(_ROUND_OFF * (forces + held)))
+        contact = self._problem.contact_forces[: len(diagonal)]
+        stiff = np.where(diagonal > 0.0, diagonal, np.inf)
+        open_work = TOLERANCE * float(contact @ (contact / stiff))
+        return float(self._problem.comm.allreduce(_ROUND_OFF * (forces + held) + open_work))
 
     def _changed(self) -> tuple[bool, bool]:
         """Whether many points have begun or ended contact, or sliding, and more than the other.

@@ -93,6 +93,11 @@ class ReportedSystem(AssembledSystem):
         """All forces but those of contact on the unknowns this rank owns, accepted state."""
         return self._accepted.outside
 
+    @property
+    def contact_forces(self) -> Floats:
+        """Forces of contact on the unknowns this rank owns, accepted state."""
+        return self._accepted.contact
+
     def inverted_cells(self) -> Floats:
         """Middles of the cells of this rank that the last evaluation inverted, (n, 3)."""
         return self._bodies.inverted()
