@@ -41,6 +41,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Any:
         points = _Points(20 - sticking, sticking, 0)
         problem: Any = SimpleNamespace(
             contacts=[points],
+            missed=float("inf"),  # so nothing snaps
             bulk=SimpleNamespace(stores=True, dissipated_by_body=lambda: dict(points.bodies)),
             energies=lambda: {"external": 0.0, "residual": 0.0, "regularisation": 0.0},
         )
