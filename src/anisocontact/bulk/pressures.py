@@ -14,7 +14,7 @@ that the correction has led to, `K P(e + de/du du)`, and corrections are those o
 which p is an unknown of its own. The first of them has that of the accepted state, unless that of
 the iterate is near: an extrapolated state changes the volume by the square of the increment, which
 K makes a pressure of, too. A line search by the residual of displacements would see that pressure
-of second order again: where penalties press there is one of the mixed form, see `MixedSearch`.
+of second order again: where penalties press, rubber has one of the mixed form, see `MixedSearch`.
 """
 
 from __future__ import annotations
@@ -45,6 +45,8 @@ from anisocontact.mesh import Model
 MOST = 1.0
 #: From which on corrections are taken in full: nu = 0.4995 in a block of cubes.
 IN_FULL = 250.0
+#: From which on they have a line search of the mixed form beside penalties: nu = 0.46 there.
+SEARCHED = 5.0
 #: Change of the pressures of a cell from the accepted state to the first iterate up to which the
 #: first tangent has those of the iterate, over the stiffness of the cell against changes of shape.
 NEAR = 2e-3
@@ -98,6 +100,7 @@ class CellPressures:
         of: The pressure of each of these bodies by name, a DOLFINx function.
         followed: Pressures that follow corrections; None where nothing keeps its volume apart.
         in_full: Whether corrections are to be taken in full, without a line search.
+        searched: Whether a line search of the mixed form pays beside penalties.
         hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
         hardnesses: The same of every pressure this rank owns, the mean of its nodes, (pressures,).
     """
@@ -115,7 +118,7 @@ class CellPressures:
         self._pressure: Any = fem.Function(space)
         self._width = space.element.space_dimension
         self.of: dict[str, Any] = {}
-        self.in_full, self.hardness = False, 0.0
+        self.in_full, self.searched, self.hardness = False, False, 0.0
         self.hardnesses: Floats = np.zeros(0)
         self.followed: FollowedPressures | None = None
         mass, change = self._forms(model, laws, dx, heated)
@@ -248,7 +251,7 @@ class CellPressures:
         self.hardness = max(self._pressure.function_space.mesh.comm.allgather(hardest))
         ratios = np.divide(held, shape, out=np.zeros_like(held), where=held > 0.0)
         self.hardnesses = self._mean_of_nodes(ratios)
-        self.in_full = self.hardness > IN_FULL
+        self.in_full, self.searched = self.hardness > IN_FULL, self.hardness > SEARCHED
         found.array[:] -= np.maximum(held - MOST * rest, 0.0)
         return found
 

@@ -65,7 +65,8 @@ class System(Protocol):
 
         Args:
             searching: Whether it has a line search of ours, without which pressures of bodies that
-                penalties press do not follow corrections.
+                penalties press do not follow corrections. Nor do those of metal, whose node at rest
+                is hardly stiffer against changes of volume than of shape.
         """
         ...
 

@@ -61,6 +61,11 @@ class ComposedSystem(ReportedSystem):
         return volume is not None and volume.in_full and not self.linear
 
     @property
+    def searched(self) -> bool:
+        """Whether a line search of the mixed form pays beside penalties, see `corrected`."""
+        return self.bulk.volume is not None and self.bulk.volume.searched
+
+    @property
     @override
     def followed(self) -> FollowedPressures | None:
         return self.bulk.volume.followed if self.bulk.volume is not None else None
