@@ -14,6 +14,7 @@ from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
 from anisocontact.results import Results
+from anisocontact.solver import Solver
 
 FOLDER = Path(__file__).parents[2] / "examples" / "thread"
 
@@ -51,11 +52,10 @@ def test_the_ring_turns() -> None:
     of the chord for the arc of an increment is 1e-4.
     """
     built = build(load(FOLDER / "case.toml"))
-    built.solver.steps[1] = replace(
-        built.steps[1], increments=8, displacement={"ring.bottom": {"z": 2.0}}
-    )
+    begin, pushing = built.steps
+    pushed = replace(pushing, increments=8, displacement={"ring.bottom": {"z": 2.0}})
     contact = built.problem.contacts[0]
-    places = [contact.points.copy() for _ in built.solver.run()]
+    places = [contact.points.copy() for _ in Solver(built.problem, [begin, pushed]).run()]
     turn, length = path(places[4], places[-1])
     assert turn / length == pytest.approx(slip_under_axial_force(), rel=1e-3)
     force, moment = contact.resultant()
