@@ -23,8 +23,8 @@ class ReadOnlyDict(dict[Any, Any]):
     """
 
     def _refuse(self, *args: Any, **kwargs: Any) -> NoReturn:
-        text = "read only, as what has it was checked when it was made: make another one, of a step"
-        raise InputError(f"{text} by dataclasses.replace")
+        text = "read only, as what has it was checked when it was made: make another one"
+        raise InputError(f"{text}; of a step, with dataclasses.replace")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse

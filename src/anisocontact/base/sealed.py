@@ -105,5 +105,7 @@ def unsealed(made: Sealed) -> Iterator[None]:
         ...     spring.stiffness = 2.0
     """
     made._sealed = False
-    yield
-    made._sealed = True
+    try:
+        yield
+    finally:
+        made._sealed = True

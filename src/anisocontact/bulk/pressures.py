@@ -46,7 +46,7 @@ MOST = 1.0
 #: From which on corrections are taken in full: nu = 0.4995 in a block of cubes.
 IN_FULL = 250.0
 #: From which on they have a line search of the mixed form beside penalties: nu = 0.46 there.
-SEARCHED = 5.0
+MIXED_SEARCH = 5.0
 #: Change of the pressures of a cell from the accepted state to the first iterate up to which the
 #: first tangent has those of the iterate, over the stiffness of the cell against changes of shape.
 NEAR = 2e-3
@@ -100,7 +100,7 @@ class CellPressures:
         of: The pressure of each of these bodies by name, a DOLFINx function.
         followed: Pressures that follow corrections; None where nothing keeps its volume apart.
         in_full: Whether corrections are to be taken in full, without a line search.
-        searched: Whether a line search of the mixed form pays beside penalties.
+        mixed_search: Whether a line search of the mixed form pays beside penalties.
         hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
         hardnesses: The same of every pressure this rank owns, the mean of its nodes, (pressures,).
     """
@@ -118,7 +118,7 @@ class CellPressures:
         self._pressure: Any = fem.Function(space)
         self._width = space.element.space_dimension
         self.of: dict[str, Any] = {}
-        self.in_full, self.searched, self.hardness = False, False, 0.0
+        self.in_full, self.mixed_search, self.hardness = False, False, 0.0
         self.hardnesses: Floats = np.zeros(0)
         self.followed: FollowedPressures | None = None
         mass, change = self._forms(model, laws, dx, heated)
@@ -251,7 +251,8 @@ class CellPressures:
         self.hardness = max(self._pressure.function_space.mesh.comm.allgather(hardest))
         ratios = np.divide(held, shape, out=np.zeros_like(held), where=held > 0.0)
         self.hardnesses = self._mean_of_nodes(ratios)
-        self.in_full, self.searched = self.hardness > IN_FULL, self.hardness > SEARCHED
+        self.in_full = self.hardness > IN_FULL
+        self.mixed_search = self.hardness > MIXED_SEARCH
         found.array[:] -= np.maximum(held - MOST * rest, 0.0)
         return found
 

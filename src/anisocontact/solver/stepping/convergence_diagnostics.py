@@ -150,8 +150,10 @@ def _inverted(problem: Problem) -> Iterator[Culprit]:
         yield Culprit("inverted", _place(middle), "the cell here is inverted (det F <= 0)")
 
 
-def folded_cells(problem: Problem) -> dict[str, tuple[int, tuple[float, float, float]]]:
-    """Cells folded at a corner, over all ranks: how many, and where the first is, by body."""
+def folded_by_deformation(
+    problem: Problem,
+) -> dict[str, tuple[int, tuple[float, float, float]]]:
+    """Cells folded over at a corner, over all ranks: how many, and where the first is, by body."""
     found: dict[str, list[Floats]] = {}
     for some in problem.comm.allgather(problem.folded_cells()):
         for name, middles in some.items():

@@ -51,7 +51,7 @@ UNSTABLE = (
 FOLDED = (
     "body {name!r}: {cells} folded over at a corner (det F <= 0 there), the first at {place}: no "
     "body deforms so, and forces around it are none of its material; round off an edge "
-    "that is pressed or dragged there, or take cells of order 1"
+    "that is pressed or dragged there, or take order 1 where cells are of order 2"
 )
 #: Forces out of balance, over those at work, from which on a state is none of equilibrium.
 UNBALANCED = 1e-4

@@ -16,7 +16,7 @@ from anisocontact.contact.multiplier_schemes import SLENDER
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.bending import bend, told_if_unstable
 from anisocontact.solver.stepping.border_watch import without_slip
-from anisocontact.solver.stepping.convergence_diagnostics import NAMED, folded_cells
+from anisocontact.solver.stepping.convergence_diagnostics import NAMED, folded_by_deformation
 from anisocontact.solver.stepping.cut_faces import CutFaceWatch
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
@@ -394,7 +394,7 @@ class Solver(Uncopied, changing="place doubtful"):
             faces=self._faces.faces(),
             without_slip=without_slip(self.problem),
             crossed=self._symmetry.crossed(),
-            folded=folded_cells(self.problem),
+            folded=folded_by_deformation(self.problem),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",

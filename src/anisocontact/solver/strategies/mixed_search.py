@@ -59,9 +59,7 @@ class MixedSearch:
         """Residual of the mixed form where a share of a correction leads to, over all ranks."""
         followed, there = self._system.followed, x.duplicate()
         assert followed is not None
-        part = correction.copy()
-        part.scale(share)
-        there.waxpy(-1.0, part, x)
+        there.waxpy(-share, correction, x)
         with followed.trial(share):
             residual = self._system.evaluate(there)
         return float(np.sqrt(x.comm.tompi4py().allreduce(float(residual @ residual))))

@@ -84,10 +84,11 @@ class NewtonIteration:
     def damp(self, x: Vec, direction: Vec) -> bool:
         """Shorten a correction, for PETSc; whether it was."""
         share = 1.0 if self._damping is None else self._damping()
-        search = self.search if self._system.contact_term.simultaneous else None
-        if search is not None or self.mixes:
+        follows = self._system.contact_term.simultaneous
+        if follows or self.mixes:
+            search = self.search if follows else self.mixed
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                share = (search or self.mixed).share(x, direction, share)
+                share = search.share(x, direction, share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0

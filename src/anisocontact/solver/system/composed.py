@@ -61,9 +61,9 @@ class ComposedSystem(ReportedSystem):
         return volume is not None and volume.in_full and not self.linear
 
     @property
-    def searched(self) -> bool:
+    def mixed_search(self) -> bool:
         """Whether a line search of the mixed form pays beside penalties, see `corrected`."""
-        return self.bulk.volume is not None and self.bulk.volume.searched
+        return self.bulk.volume is not None and self.bulk.volume.mixed_search
 
     @property
     @override

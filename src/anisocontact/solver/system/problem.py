@@ -244,7 +244,7 @@ class Problem(
 
     @override
     def corrected(self, searching: bool) -> AbstractContextManager[bool]:
-        in_full_alone = self.contact_term.by_penalties and not (searching and self.searched)
+        in_full_alone = self.contact_term.by_penalties and not (searching and self.mixed_search)
         return self.assembly.bodies.followed(self._bodies.nodal, in_full_alone)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
