@@ -119,6 +119,19 @@ def test_bulk_data_alone_and_other_coordinate_systems(tmp_path: Path) -> None:
         file_arrays(path)
 
 
+def test_bulk_data_that_include_others_are_refused(tmp_path: Path) -> None:
+    """Requirement: what an INCLUDE names is not left out in silence, beside cells or without."""
+    path = tmp_path / "part.bdf"
+    tetrahedron = "GRID,1\nGRID,2,,1.\nGRID,3,,,1.\nGRID,4,,,,1.\nCTETRA,1,7,1,2,3,4\n"
+    for beside in (tetrahedron, ""):
+        path.write_text(f"SOL 101\nCEND\nBEGIN BULK\n{beside}include 'rest.bdf'\nENDDATA\n")
+        with pytest.raises(InputError, match=r"include 'rest\.bdf' is not read; put the lines of"):
+            file_arrays(path)
+    path.write_text("BEGIN BULK\nENDDATA\n")
+    with pytest.raises(InputError, match=r"no solid cell .*; there are: none at all"):
+        file_arrays(path)
+
+
 @pytest.mark.parametrize(("name", "of"), [("part.cdb", "Ansys"), ("part.k", "LS-DYNA")])
 def test_files_that_are_not_read_say_so(tmp_path: Path, name: str, of: str) -> None:
     """Requirement: a file of a code whose meshes are not read is told with what to write."""

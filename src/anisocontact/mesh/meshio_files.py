@@ -72,7 +72,8 @@ def read_by_meshio(path: Path) -> WholeMesh:
     """
     given = _read(path)
     points = np.zeros((len(given.points), 3))
-    points[:, : given.points.shape[1]] = given.points
+    if len(given.points):  # without nodes some readers of meshio give one axis
+        points[:, : given.points.shape[1]] = given.points
     mesh = WholeMesh(points)
     dim = _dimension(given, points)
     solids, facets = (SOLIDS, FACETS) if dim == 3 else (PLANE, EDGES)

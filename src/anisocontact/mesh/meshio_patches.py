@@ -16,21 +16,32 @@ from anisocontact.base.errors import InputError
 #: Where the mesh of a Nastran file begins and ends.
 BEGIN = re.compile(r"^\s*BEGIN\s+BULK.*$", re.IGNORECASE | re.MULTILINE)
 END = re.compile(r"^\s*ENDDATA.*", re.IGNORECASE | re.MULTILINE)
+#: What takes over another file.
+INCLUDED = re.compile(r"^[ \t]*INCLUDE\b.*$", re.IGNORECASE | re.MULTILINE)
 
 
 def nastran(path: Path) -> Any:
     """The mesh of a Nastran file, with or without control sections in front of its bulk data.
 
     Raises:
-        InputError: Nodes are given in coordinate systems of their own.
+        InputError: Nodes are given in coordinate systems of their own, or other files are included.
     """
     from meshio.nastran import _nastran
 
     text = path.read_text("utf-8", errors="replace")
     begin = BEGIN.search(text)
     bulk = END.split(text[begin.end() :] if begin else text)[0]
+    _check_included(bulk)
     _check_systems(bulk)
     return _nastran.read_buffer(io.StringIO(f"BEGIN BULK\n{bulk.strip()}\nENDDATA\n"))
+
+
+def _check_included(bulk: str) -> None:
+    """Refuse a file that includes others: meshio leaves out what is in them."""
+    found = INCLUDED.search(bulk)
+    if found:
+        text = f"{found[0].strip()} is not read; put the lines of that file in its place"
+        raise InputError(text)
 
 
 def _check_systems(bulk: str) -> None:
