@@ -239,6 +239,7 @@ displacement = { "block.patch" = { x = 0, y = 0, z = -0.01 } }
         ("point = [0, 0, 0.5]", "point = [0, 0, 0.4]", "group.patch: no facet at the boundary"),
         ('group."block.seat"', 'group."blok.seat"', "group.blok.seat: no body 'blok'"),
         ('"block.left"', '"block.lift"', "did you mean 'block.left'?"),
+        ('"block.left"', '"block.wood"', "'block.wood' in the mesh; the mesh has: block.left,"),
         ('"block.left"', '"left"', "join.block.skin: no facet group 'left' in the mesh"),
         ('"block.skin"', '"block.top"', "join.block.top: 'block.top' is a group already"),
         ('"block.skin"', '"skin"', "join.skin: 'block.seat' given, groups of the body of 'skin'"),

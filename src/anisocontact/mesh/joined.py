@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 
 
@@ -48,8 +48,7 @@ def with_joined(mesh: MeshArrays, joined: Mapping[str, Sequence[str]]) -> MeshAr
 def _check(part: str, name: str, known: Sequence[str]) -> None:
     """Refuse a group that is not there, or is one of another body."""
     if part not in known:
-        meant = difflib.get_close_matches(part, known, 1)
-        hint = f"; did you mean {meant[0]!r}?" if meant else ""
-        raise InputError(f"no facet group {part!r} in the mesh{hint}", name)
+        there = hint(part, known, "the mesh has")
+        raise InputError(f"no facet group {part!r} in the mesh; {there}", name)
     if part.rpartition(".")[0] != name.rpartition(".")[0]:
         raise InputError(f"{part!r} given, groups of the body of {name!r} needed", name)

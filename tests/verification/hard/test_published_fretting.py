@@ -23,48 +23,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import pad_on_block
 from tests.verification.hard.drawn import drawn, fine_at
 
 RADIUS, E, NU, MU = 100.0, 1000.0, 0.3, 0.4
 REDUCED = 0.5 * E / (1.0 - NU**2)
 PRESSED, SHEARED, STRETCH = 4.31, 0.9, 1.0
 
-CASE = f"""
-title = "Fretting"
-[idealisation]
-kind = "plane-strain"
-[mesh]
-file = "bodies.msh"
-[material.pad]
-model = "{{model}}"
-E = {E}
-nu = {NU}
-[material.block]
-model = "{{model}}"
-E = {E}
-nu = {NU}
-[[contact]]
-slave = "{{slave}}"
-master = "{{master}}"
-friction = {{{{ coefficients = {MU} }}}}
-[rigid.head]
-faces = ["pad.top"]
-reference = [0, 12, 0]
-[[step]]
-name = "touch"
-increments = 1
-displacement = {{{{ "block.bottom" = {{{{ y = 0 }}}}, "block.middle" = {{{{ x = 0 }}}} }}}}
-motion = {{{{ head = {{{{ y = -0.02 }}}} }}}}
-[[step]]
-name = "press"
-increments = 1
-motion = {{{{ head = {{{{ x = "free", y = "free" }}}} }}}}
-load = {{{{ head = {{{{ y = -{PRESSED} }}}} }}}}
+HELD = '{ "block.bottom" = { y = 0 }, "block.middle" = { x = 0 } }'
+SHEARED_THEN = f"""
 [[step]]
 name = "shear"
 increments = 4
-load = {{{{ head = {{{{ x = {SHEARED} }}}} }}}}
-traction = {{{{ "block.right" = {{{{ x = {STRETCH} }}}}, "block.left" = {{{{x = -{STRETCH} }}}} }}}}
+load = {{ head = {{ x = {SHEARED} }} }}
+traction = {{ "block.right" = {{ x = {STRETCH} }}, "block.left" = {{ x = -{STRETCH} }} }}
 """
 
 
@@ -124,7 +96,8 @@ def test_fretting(
 ) -> None:
     """Shear at every node, and what it would be without the stretch."""
     mesh(tmp_path / "bodies.msh")
-    run = to_the_end(CASE.format(model=model, slave=sides[0], master=sides[1]), most=8000)
+    text = pad_on_block(sides, E, NU, MU, held=HELD, touch=0.02, load=PRESSED, model=model)
+    run = to_the_end(text + SHEARED_THEN, most=8000)
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 10
     (contact,) = run.problem.contacts

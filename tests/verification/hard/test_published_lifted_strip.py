@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import on_a_floor
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
@@ -32,24 +33,7 @@ from anisocontact.case.build import build
 
 LENGTH, HEIGHT, YOUNG, WEIGHT, LIFT = 40.0, 0.5, 1e4, 1e-3, 0.0625
 CASE = f"""
-title = "Lifted strip"
-[idealisation]
-kind = "plane-strain"
-[mesh.rectangle.strip]
-origin = [0, 0]
-size = [{LENGTH}, {HEIGHT}]
-cells = [80, 4]
-[material.strip]
-model = "linear-elastic"
-E = {YOUNG}
-nu = 0
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-[[contact]]
-slave = "strip.bottom"
-master = "floor"
+{on_a_floor("strip", (LENGTH, HEIGHT), (80, 4), YOUNG)}
 METHOD
 friction = {{ coefficients = [FRICTION, FRICTION] }}
 [[step]]
@@ -122,7 +106,7 @@ def test_a_heavier_strip_lies_on_points(base: bool, tmp_path: Path) -> None:
     weight, lift, cells = 0.03, 0.3, 60
     case = CASE.replace("METHOD", POINTS).replace("FRICTION", "0.3")
     case = case.replace("cells = [80, 4]", f"cells = [{cells}, 2]")
-    case = case.replace("nu = 0\n", "nu = 0.3\n")
+    case = case.replace("nu = 0.0\n", "nu = 0.3\n")
     case = case.replace(f"y = -{WEIGHT}", f"y = -{weight}").replace(f"y = {LIFT}", f"y = {lift}")
     if base:
         case = case.replace('master = "floor"', 'master = "base.top"')

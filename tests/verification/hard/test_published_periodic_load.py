@@ -27,33 +27,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from tests.verification.hard.test_published_fretting import MU, NU, RADIUS, REDUCED, E, mesh
+from tests.verification.hard.case_texts import pad_on_block
+from tests.verification.hard.test_published_fretting import HELD, MU, NU, RADIUS, REDUCED, E, mesh
 
 type Floats = npt.NDArray[np.float64]
 
 MEAN, SWING, SHEAR, PHASE, PARTS = 3.3, 1.0, 0.9, np.radians(60.0), 16
 
-CASE = f"""
-title = "Periodic load"
-[idealisation]
-kind = "plane-strain"
-[mesh]
-file = "bodies.msh"
-[material.pad]
-model = "linear-elastic"
-E = {E}
-nu = {NU}
-[material.block]
-model = "linear-elastic"
-E = {E}
-nu = {NU}
-[[contact]]
-slave = "{{}}"
-master = "{{}}"
-friction = {{{{ coefficients = {MU} }}}}
-[rigid.head]
-faces = ["pad.top"]
-reference = [0, 12, 0]
+CYCLES = f"""
 [amplitude.pressing]
 kind = "sine"
 period = 1
@@ -63,26 +44,16 @@ kind = "sine"
 period = 1
 phase_deg = {np.degrees(PHASE)}
 [[step]]
-name = "touch"
-increments = 1
-displacement = {{{{ "block.bottom" = {{{{ y = 0 }}}}, "block.middle" = {{{{ x = 0 }}}} }}}}
-motion = {{{{ head = {{{{ y = -0.02 }}}} }}}}
-[[step]]
-name = "press"
-increments = 1
-motion = {{{{ head = {{{{ x = "free", y = "free" }}}} }}}}
-load = {{{{ head = {{{{ y = -{MEAN} }}}} }}}}
-[[step]]
 name = "shift"
 increments = 1
-load = {{{{ head = {{{{ x = {SHEAR * np.sin(PHASE)} }}}} }}}}
+load = {{ head = {{ x = {SHEAR * np.sin(PHASE)} }} }}
 [[step]]
 name = "cycles"
 increments = {2 * PARTS}
 duration = 2
 [step.load.head]
-x = {{{{ amplitude = "shearing", value = {SHEAR} }}}}
-y = {{{{ amplitude = "pressing", value = {-SWING} }}}}
+x = {{ amplitude = "shearing", value = {SHEAR} }}
+y = {{ amplitude = "pressing", value = {-SWING} }}
 """
 
 
@@ -181,7 +152,8 @@ def test_periodic_load(tmp_path: Path, to_the_end: Callable[..., Any]) -> None:
     a = np.sqrt(4.0 * MEAN * RADIUS / (np.pi * REDUCED))
     dissipated = []
     for sides in (("pad.nose", "block.top"), ("block.top", "pad.nose")):
-        run = to_the_end(CASE.format(*sides), most=8000)
+        text = pad_on_block(sides, E, NU, MU, held=HELD, touch=0.02, load=MEAN)
+        run = to_the_end(text + CYCLES, most=8000)
         assert not run.cuts
         assert max(part.iterations for part in run.accepted) <= 8
         spent = [part.energies["friction"] for part in run.accepted]

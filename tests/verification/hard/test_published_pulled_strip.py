@@ -20,28 +20,13 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
+from tests.verification.hard.case_texts import on_a_floor
 
 YOUNG, THICK, WAY, ACROSS = 1e5, 0.2, 0.05, 0.3
 BENDING, DRAG = YOUNG * THICK / 12.0, ACROSS * THICK
 
 CASE = f"""
-title = "Strip pulled sideways"
-[mesh.box.strip]
-origin = [0, -0.5, 0]
-size = [40, 1, {THICK}]
-cells = [80, 1, 1]
-order = 2
-[material.strip]
-model = "linear-elastic"
-E = {YOUNG}
-nu = 0
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 0, 1]
-[[contact]]
-slave = "strip.bottom"
-master = "floor"
+{on_a_floor("strip", (40, 1, THICK), (80, 1, 1), YOUNG, order=2)}
 friction = {{{{ {{friction}} }}}}
 [[step]]
 name = "weight"

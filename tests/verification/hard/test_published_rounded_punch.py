@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from tests.verification.hard.case_texts import pad_on_block
 from tests.verification.hard.drawn import drawn, fine_at
 from tests.verification.line_contact.test_rounded_punch import exact, load
 
@@ -36,41 +37,11 @@ UNIT = REDUCED * FLAT**2 / (2.0 * RADIUS)
 EDGE = 0.5
 FORCE = load(EDGE) * UNIT
 
-CASE = f"""
-title = "Rounded punch"
-[idealisation]
-kind = "plane-strain"
-[mesh]
-file = "bodies.msh"
-[material.pad]
-model = "linear-elastic"
-E = {E}
-nu = {NU}
-[material.block]
-model = "linear-elastic"
-E = {E}
-nu = {NU}
-[[contact]]
-slave = "{{sides[0]}}"
-master = "{{sides[1]}}"
-friction = {{{{ coefficients = {MU} }}}}
-[rigid.head]
-faces = ["pad.top"]
-reference = [0, 12, 0]
-[[step]]
-name = "touch"
-increments = 1
-displacement = {{{{ "block.bottom" = {{{{ x = 0, y = 0 }}}} }}}}
-motion = {{{{ head = {{{{ y = -0.002 }}}} }}}}
-[[step]]
-name = "press"
-increments = 1
-motion = {{{{ head = {{{{ x = "free", y = "free" }}}} }}}}
-load = {{{{ head = {{{{ y = -{FORCE} }}}} }}}}
+SHEARED = f"""
 [[step]]
 name = "shear"
 increments = 1
-load = {{{{ head = {{{{ x = {SHARE * MU * FORCE} }}}} }}}}
+load = {{ head = {{ x = {SHARE * MU * FORCE} }} }}
 """
 SIDES = [("pad.nose", "block.top"), ("block.top", "pad.nose")]
 
@@ -137,7 +108,9 @@ def test_sheared_in_part(
 ) -> None:
     """Pressure and shear at every node."""
     mesh(tmp_path / "bodies.msh", order, size)
-    run = to_the_end(CASE.format(sides=sides), most=16000)
+    held = '{ "block.bottom" = { x = 0, y = 0 } }'
+    text = pad_on_block(sides, E, NU, MU, held=held, touch=0.002, load=FORCE)
+    run = to_the_end(text + SHEARED, most=16000)
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 8
     (contact,) = run.problem.contacts

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
+from tests.verification.hard.case_texts import on_a_floor
 
 HIGH, LONG, E = 0.2, 16.0, 1e4
 BENDING = E * HIGH**3 / 12.0
@@ -34,26 +35,9 @@ WEIGHT = BENDING / 8.0
 CASE = f"""
 title = "Ruck"
 symmetry = ["sheet.left"]
-[idealisation]
-kind = "plane-strain"
-[mesh.rectangle.sheet]
-origin = [0, 0]
-size = [{LONG}, {HIGH}]
-cells = [80, 1]
-order = 2
 [nodes."sheet.crest"]
 near = [0, {HIGH}, 0]
-[material.sheet]
-model = "neo-hookean"
-E = {E}
-nu = 0
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-[[contact]]
-slave = "sheet.bottom"
-master = "floor"
+{on_a_floor("sheet", (LONG, HIGH), (80, 1), E, model="neo-hookean", order=2)}
 friction = {{{{ coefficients = {{friction}} }}}}
 [[step]]
 name = "lift"

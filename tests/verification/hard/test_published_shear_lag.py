@@ -28,44 +28,42 @@ import numpy.typing as npt
 import pytest
 from scipy.linalg import expm, sqrtm
 from scipy.optimize import brentq
+from tests.verification.hard.case_texts import on_a_floor
 
 LENGTH, THICK, E, PRESSED = 20.0, 0.05, 1000.0, 0.01
 
-CASE = f"""
-title = "Shear lag"
-[idealisation]
-kind = "plane-strain"
-lateral = true
-[mesh.rectangle.strip]
-origin = [0, 0]
-size = [{LENGTH}, {THICK}]
-cells = [{{cells}}, 1]
-order = {{order}}
-[material.strip]
-model = "linear-elastic"
-E = {E}
-nu = 0
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-[[contact]]
-slave = "strip.bottom"
-master = "floor"
+LAWS = """
 [contact.adhesion]
-stiffness = [{{along}}, {{across}}]
-directions = {{{{ kind = "constant", vector = [1, 0, 0], angle_deg = {{angle}} }}}}
+stiffness = [{along}, {across}]
+directions = {{ kind = "constant", vector = [1, 0, 0], angle_deg = {angle} }}
 [contact.friction]
-coefficients = {{friction}}
+coefficients = {friction}
 [[step]]
 name = "press"
 increments = 1
-pressure."strip.top" = {PRESSED}
+pressure."strip.top" = {pressed}
 [[step]]
 name = "pull"
 increments = 1
-displacement."strip.right" = {{{{ x = {{pull}} }}}}
+displacement."strip.right" = {{ x = {pull} }}
 """
+
+
+def case(
+    cells: int,
+    order: int,
+    stiffness: tuple[float, float],
+    angle: float,
+    friction: float,
+    pull: float,
+) -> str:
+    """The case: cells along the strip, axes of the layer at an angle, way of the end."""
+    size = (LENGTH, THICK)
+    strip = on_a_floor("strip", size, (cells, 1), E, lateral=True, order=order)
+    along, across = stiffness
+    return strip + LAWS.format(
+        along=along, across=across, angle=angle, friction=friction, pressed=PRESSED, pull=pull
+    )
 
 
 def strip(
@@ -98,16 +96,7 @@ def test_layer_with_axes(
 ) -> None:
     """Tractions along and across the pull, of a layer that holds them all."""
     pull = 2e-4
-    text = CASE.format(
-        cells=40,
-        order=order,
-        along=stiffness[0],
-        across=stiffness[1],
-        angle=angle,
-        friction=100,
-        pull=pull,
-    )
-    run = to_the_end(text)
+    run = to_the_end(case(40, order, stiffness, angle, 100, pull))
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 2
     traction, force = strip(angle, stiffness, pull)
@@ -135,16 +124,7 @@ def test_end_that_slips(to_the_end: Callable[..., Any], cells: int, order: int) 
 
     slips = float(brentq(lambda s: end(s) - pull, 0.0, LENGTH))
     force = gives * slope(slips) + friction * slips
-    text = CASE.format(
-        cells=cells,
-        order=order,
-        along=layer,
-        across=layer,
-        angle=0,
-        friction=0.3,
-        pull=pull,
-    )
-    run = to_the_end(text)
+    run = to_the_end(case(cells, order, (layer, layer), 0.0, 0.3, pull))
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 6
     (contact,) = run.problem.contacts

@@ -23,28 +23,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import on_a_floor
 
 LENGTH, HIGH, E = 20.0, 0.25, 1e4
 
 CASE = f"""
-title = "Strip on a floor"
-[idealisation]
-kind = "plane-strain"
-[mesh.rectangle.strip]
-origin = [0, 0]
-size = [{LENGTH}, {HIGH}]
-cells = [80, 1]
-[material.strip]
-model = "linear-elastic"
-E = {E}
-nu = 0
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-[[contact]]
-slave = "strip.bottom"
-master = "floor"
+{on_a_floor("strip", (LENGTH, HIGH), (80, 1), E)}
 [contact.friction]
 coefficients = [0.3, 0.1]
 directions = {{{{ kind = "constant", vector = [1, 0, 0], angle_deg = {{angle}} }}}}

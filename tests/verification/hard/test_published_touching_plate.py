@@ -24,37 +24,19 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from tests.verification.hard.case_texts import on_a_floor
 
 EDGE, THICK, GAP, YOUNG, NU = 20.0, 0.4, 0.2, 1e5, 0.3
 STIFF = YOUNG * THICK**3 / 12.0 / (1.0 - NU**2)
 
-CASE = f"""
-title = "Plate pressed on a floor under it"
-[idealisation]
-kind = "axisymmetric"
-[mesh.rectangle.plate]
-origin = [0, 0]
-size = [{EDGE}, {THICK}]
-cells = [{{cells}}, 1]
-order = 2
-[material.plate]
-model = "linear-elastic"
-E = {YOUNG}
-nu = {NU}
-[surface.floor]
-shape = "plane"
-point = [0, {-GAP}, 0]
-normal = [0, 1, 0]
-[[contact]]
-slave = "plate.bottom"
-master = "floor"
-{{method}}
-friction = {{{{ coefficients = {{friction}} }}}}
+LOADED = """
+{method}
+friction = {{ coefficients = {friction} }}
 [[step]]
 name = "press"
 increments = 1
-displacement = {{{{ "plate.right" = {{{{ x = 0, y = 0 }}}} }}}}
-pressure = {{{{ "plate.top" = {{load}} }}}}
+displacement = {{ "plate.right" = {{ x = 0, y = 0 }} }}
+pressure = {{ "plate.top" = {load} }}
 """
 
 
@@ -99,7 +81,10 @@ def test_touching_plate(
 ) -> None:
     """Force of the floor, and radius of the contact."""
     cells = 120 if load > 1.0 else 60
-    run = to_the_end(CASE.format(load=load, method=method, friction=friction, cells=cells))
+    plate = on_a_floor(
+        "plate", (EDGE, THICK), (cells, 1), YOUNG, kind="axisymmetric", nu=NU, order=2, gap=GAP
+    )
+    run = to_the_end(plate + LOADED.format(load=load, method=method, friction=friction))
     assert not run.cuts
     assert run.accepted[0].iterations <= 58
     b, force = exact(load)
