@@ -59,7 +59,7 @@ def test_degrees_and_radian_give_the_same():
         for angle in ({"angle": math.pi / 6}, {"angle_deg": 30}, {"angle": math.radians(30)})
     ]
     assert found[0] == found[1] == found[2]
-    assert _ellipse(slip_angle_deg=30).rule[1]["slip_angle"] == [math.radians(30)]
+    assert _ellipse(slip_angle_deg=30).rule[1]["slip_angle"] == (math.radians(30),)
     # more than a turn may be meant where degrees are
     turned = make_directions("constant", **X, angle_deg=390).axes(plane, [[0, 0]])[0]
     assert turned == pytest.approx(np.array(found[0]), abs=1e-14)

@@ -145,7 +145,7 @@ def test_compared_rule_keeps_no_parameter_of_the_one_it_replaces(data: dict[str,
     (radial, low) = validate_trace(new).compared
     assert (radial[0], radial[1].tangential.friction.rule[0]) == ("radial", "radial")
     assert (low[0], low[1].tangential.friction.rule[0]) == ("low", "explicit")
-    assert low[1].tangential.friction.named[1]["coefficients"] == [0.1, 0.1]
+    assert low[1].tangential.friction.named[1]["coefficients"] == (0.1, 0.1)
 
 
 def test_schema_describes_every_key() -> None:

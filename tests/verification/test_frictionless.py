@@ -97,14 +97,14 @@ def test_one_number_is_isotropic_everywhere():
     assert Friction(coefficients=0.3).named == Friction(coefficients=(0.3, 0.3)).named
     assert Adhesion(stiffness=5).named == Adhesion(stiffness=(5, 5)).named
     maxwell = Adhesion("maxwell", stiffness=5, relaxation_time=np.array(2.0))
-    assert maxwell.named[1]["relaxation_time"] == [2.0, 2.0]
+    assert maxwell.named[1]["relaxation_time"] == (2.0, 2.0)
     two = Friction("he-curnier", alpha=0.3)
-    assert two.named[1]["alpha"] == [0.3, 0.0, 0.0] and two.directions is None
+    assert two.named[1]["alpha"] == (0.3, 0.0, 0.0) and two.directions is None
     assert Friction("he-curnier", alpha=0).frictionless
     full = Adhesion("general-linear", relaxation=1, stiffness_instant=7)
-    assert full.named[1]["stiffness_instant"] == [7.0, 0.0, 0.0, 7.0]
+    assert full.named[1]["stiffness_instant"] == (7.0, 0.0, 0.0, 7.0)
     rule = Friction(coefficients=1, sliding_rule="slip-ellipse", slip_axes=2).rule
-    assert rule[1]["slip_axes"] == [2.0, 2.0]
+    assert rule[1]["slip_axes"] == (2.0, 2.0)
 
 
 def test_two_surfaces_that_are_the_same_all_around_give_coulomb():

@@ -14,6 +14,7 @@ from anisocontact.base.arrays import real
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError, ModelWarning, tell_script
 from anisocontact.base.python_file import called
+from anisocontact.base.read_only import read_only
 from anisocontact.base.sampled import sampled
 from anisocontact.base.shown import shown
 from anisocontact.base.typed import typed
@@ -51,7 +52,7 @@ class DirectionField(CopiedByArguments):
 
     def __init__(self, name: str, values: dict[str, list[float]]) -> None:
         self.name = name
-        self.named = name, values
+        self.named = name, read_only(values)
         self.core = _core.Field(name, values)
 
     def __repr__(self) -> str:

@@ -18,6 +18,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.read_only import ReadOnlyDict
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hardening import HARDENING, check_recovery, make_hardening
@@ -88,11 +89,9 @@ class Plastic(ElasticVolume, Isotropic):
         'small'
     """
 
-    history: Mapping[str, tuple[int, ...]] = {
-        "plastic_strain": (3, 3),
-        "back_stress": (3, 3),
-        PLASTIC_STRAIN: (),
-    }
+    history: Mapping[str, tuple[int, ...]] = ReadOnlyDict(
+        {"plastic_strain": (3, 3), "back_stress": (3, 3), PLASTIC_STRAIN: ()}
+    )
     entry = Entry(
         "plastic",
         "material",

@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
+from anisocontact.base.read_only import read_only
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.materials import Isotropic
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
@@ -100,7 +101,7 @@ class Viscoelastic(ElasticVolume, Isotropic):
         self._long = 2.0 * self.shear * rest[0] * (_SYMMETRIC - _TRACE)
         self.bulk = float(self.bulk_modulus * rest[1])
         self.strain = tuple(STRAINS)[int(self._given["strain"][0])]
-        self.history = {"strain": (3, 3), "elastic_strain": (self._tau.size, 3, 3)}
+        self.history = read_only({"strain": (3, 3), "elastic_strain": (self._tau.size, 3, 3)})
 
     def _shares(self, name: str, given: Sequence[float], field: str) -> Floats:
         shares = np.array(given)

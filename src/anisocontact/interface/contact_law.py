@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict
 
 import numpy as np
@@ -17,7 +17,14 @@ from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
 from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import STATE, State, as_state, raw_state
-from anisocontact.laws import Adhesion, CarriedDirections, Friction, NormalLaw, carried_directions
+from anisocontact.laws import (
+    Adhesion,
+    CarriedDirections,
+    Friction,
+    Named,
+    NormalLaw,
+    carried_directions,
+)
 
 #: Forms of evolution whose history is turned as vectors: those that meshed masters, directions on
 #: the slave and multipliers can have.
@@ -103,7 +110,7 @@ class AdhesionAndFriction(CopiedByArguments):
             text = f"'total' needs the adhesion model 'elastic', {self.model!r} given"
             raise InputError(text, field="evolution")
 
-    def named(self) -> dict[str, tuple[str, dict[str, list[float]]]]:
+    def named(self) -> dict[str, Named]:
         """Names and values of the parts."""
         return {
             "adhesion": self.adhesion.named,
@@ -167,7 +174,7 @@ class AdhesionAndFriction(CopiedByArguments):
         """Largest stiffness of adhesion, stress/length; 0 where it has none."""
         return max(self._stiffness(0.0))
 
-    def _stiffness(self, none: float) -> list[float]:
+    def _stiffness(self, none: float) -> Sequence[float]:
         """Stiffness of adhesion along its axes, or what stands for it in laws without one."""
         return self.adhesion.named[1].get("stiffness", [none])
 

@@ -40,7 +40,7 @@ def described(part: Any) -> Any:
         >>> described(NormalLaw(penalty=10.0))
         {'is': 'normal', 'model': 'penalty', 'penalty': 10.0}
         >>> made(described(Adhesion(stiffness=2.0))).named[1]["stiffness"]
-        [2.0, 2.0]
+        (2.0, 2.0)
     """
     if part is None or isinstance(part, str | int | float):
         return part

@@ -33,7 +33,7 @@ from anisocontact.interface.tangential_law import (
     law_stiffness,
 )
 from anisocontact.interface.wrong_slopes import wrong_slopes
-from anisocontact.laws import SIDES, Adhesion, CarriedDirections, Friction, NormalLaw
+from anisocontact.laws import SIDES, Adhesion, CarriedDirections, Friction, Named, NormalLaw
 
 #: How the history enters a step: a law in Python sees it turned to where the point is.
 EVOLUTION = "transport"
@@ -139,7 +139,7 @@ class PythonLaw(CopiedByArguments):
             text = f'"{evolution}" given, a law of your own has "{EVOLUTION}" only'
             raise InputError(text, "evolution")
 
-    def named(self) -> dict[str, tuple[str, dict[str, list[float]]]]:
+    def named(self) -> dict[str, Named]:
         """Names of the parts, without values."""
         name = type(self.law).__name__
         return {"adhesion": (name, {}), "friction": (name, {})}

@@ -8,6 +8,7 @@ from anisocontact.laws.core import (
     Adhesion,
     CarriedDirections,
     Friction,
+    Named,
     NormalLaw,
     carried_directions,
 )
@@ -29,6 +30,7 @@ __all__ = [
     "CarriedDirections",
     "Ellipse",
     "Friction",
+    "Named",
     "NormalLaw",
     "Slide",
     "Strip",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy.typing as npt
@@ -18,12 +18,13 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Floats
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
+from anisocontact.base.read_only import read_only
 from anisocontact.base.registry import Entry
 from anisocontact.base.sealed import Sealed
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Surface, points
 
-Named = tuple[str, dict[str, list[float]]]
+Named = tuple[str, Mapping[str, Sequence[float]]]
 #: Arguments of laws beside their parameters.
 _SIDED = ("directions", "directions_on")
 _OF_FRICTION = (*_SIDED, "directions_second", "directions_second_on", "sliding_rule")
@@ -37,7 +38,7 @@ def _named(
     others: tuple[str, ...] = (),
 ) -> Named:
     e = registry.entry(registry_of(), name, field)
-    return name, registry.values(e, parameters, others=others)
+    return name, read_only(registry.values(e, parameters, others=others))
 
 
 @typed
@@ -53,7 +54,7 @@ class NormalLaw(Sealed):
 
     Example:
         >>> NormalLaw(penalty=1e5).named[1]["penalty"]
-        [100000.0]
+        (100000.0,)
     """
 
     def __init__(self, model: str = "penalty", **parameters: object) -> None:
@@ -100,7 +101,7 @@ class Adhesion(CopiedByArguments):
 
     Example:
         >>> Adhesion(stiffness=1e5).named[1]["stiffness"]
-        [100000.0, 100000.0]
+        (100000.0, 100000.0)
     """
 
     def __init__(
@@ -182,7 +183,7 @@ class Friction(CopiedByArguments):
         self.named = _named(registry.friction_models, model, own, "friction.model", _OF_FRICTION)
         self.rule: Named = (
             sliding_rule,
-            registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
+            read_only(registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule})),
         )
         entry = registry.entry(registry.friction_models(), model)
         if entry.directions == 2:

@@ -28,7 +28,7 @@ def numerical_adhesion(friction: Friction, stiffness: float) -> Adhesion:
         >>> along = make_directions("constant", vector=(1, 0, 0))
         >>> rule = Friction(coefficients=(0.4, 0.2), directions=along, sliding_rule="explicit")
         >>> numerical_adhesion(rule, 100.0).named[1]["stiffness"]
-        [200.0, 50.0]
+        (200.0, 50.0)
     """
     first, second = friction.named[1].get("coefficients", (1.0, 1.0))
     if friction.rule[0] != EXPLICIT or first == second:

@@ -21,6 +21,7 @@ from anisocontact.base import registry
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
+from anisocontact.base.read_only import read_only
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 
@@ -62,9 +63,9 @@ class Idealisation:
     dim: ClassVar[int] = 3
     lateral: bool = True
     #: :meta private:
-    offset: Floats = np.zeros(3)
+    offset: Floats = read_only(np.zeros(3))
     #: :meta private:
-    turn: Floats = np.zeros((3, 3))
+    turn: Floats = read_only(np.zeros((3, 3)))
 
     def gradient(self, u: Any) -> Any:
         """Gradient of a displacement, (3, 3), UFL."""
@@ -206,7 +207,7 @@ class _Sheet(_Plane):
 
     def __post_init__(self) -> None:
         registry.check(_THICKNESS, self.thickness)
-        object.__setattr__(self, "offset", np.array([0.0, 0.0, float(self.thickness)]))
+        object.__setattr__(self, "offset", read_only(np.array([0.0, 0.0, float(self.thickness)])))
 
 
 @typed
@@ -302,7 +303,7 @@ class Axisymmetric(_Plane):
     )
     motions: ClassVar[tuple[str, ...]] = ("y", "ry")
     moments: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 0.0)
-    turn = 2.0 * math.pi * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    turn = read_only(2.0 * math.pi * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
 
     def at_nodes(self, expression: Any, u: Any) -> Any:
         """As of `Idealisation`: on the axis `u / x` is `du / dx`."""

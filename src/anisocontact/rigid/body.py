@@ -104,10 +104,11 @@ class RigidBody(OneHistory, changing="accepted trial turns_freely"):
         self.name = name
         self.reference = read_only(point)
         self.free, self.turns_freely = free, False
-        self.springs: Floats = np.zeros(6)
+        stiffness: Floats = np.zeros(6)
         for component, value in (springs or {}).items():
             where = f"springs.{component}"
-            self.springs[component_number(component, where)] = _stiffness(value, where)
+            stiffness[component_number(component, where)] = _stiffness(value, where)
+        self.springs: Floats = read_only(stiffness)
         if self.springs.any() and not free:
             raise InputError("given for a body that is not free", "springs")
         self.accepted = self.trial = at_rest()

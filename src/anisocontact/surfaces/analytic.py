@@ -15,6 +15,7 @@ from anisocontact.base.array_types import Codes, Floats
 from anisocontact.base.arrays import points
 from anisocontact.base.copied_by_arguments import CopiedByArguments
 from anisocontact.base.errors import InputError
+from anisocontact.base.read_only import read_only
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
@@ -119,7 +120,7 @@ class Surface(CopiedByArguments):
 
     def __init__(self, name: str, values: dict[str, list[float]]) -> None:
         self.name = name
-        self.named = name, values
+        self.named = name, read_only(values)
         self.core = _core.Surface(name, values)
 
     def __repr__(self) -> str:
