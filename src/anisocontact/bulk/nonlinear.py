@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
@@ -13,21 +13,15 @@ from anisocontact.base.compiled_forms import compiled
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Mat, Vec, assemble_force, create_force, fem, ufl
 from anisocontact.base.form_matrix import FormMatrix
-from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated, ThermalExpansion, without_expansion
 from anisocontact.bulk.history import BodyHistory
-from anisocontact.bulk.materials import (
-    Density,
-    Material,
-    body_measure,
-    linear_parts,
-    small_strain,
-)
+from anisocontact.bulk.materials import Material, body_measure, small_strain
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import CellPressures
 from anisocontact.bulk.thermal_work import ThermalWork
-from anisocontact.mesh import Idealisation, Model
+from anisocontact.bulk.virtual_work import Forms
+from anisocontact.mesh import Model
 
 
 class NonlinearBulk:
@@ -60,7 +54,7 @@ class NonlinearBulk:
         self._thermal_work = ThermalWork(model, self.heated, self.histories, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
         laws = {**given, **self.histories}
-        forms = _Forms(model, laws, self.heated, self._u, v, du, dx, full)
+        forms = Forms(model, laws, self.heated, self._u, v, du, dx, full)
         work = forms.work + self._pressures.work(v)
         self._comm = model.mesh.comm
         self._work = compiled(work, self._comm)
@@ -342,66 +336,3 @@ def cell_size(mesh: Any) -> float:
     one = compiled(fem.Constant(mesh, 1.0) * ufl.dx(domain=mesh), comm)
     volume = comm.allreduce(fem.assemble_scalar(one))
     return float((volume / cells.size_global) ** (1.0 / mesh.topology.dim))
-
-
-class _Forms:
-    """Virtual work of the stresses, and the energies as far as materials tell them.
-
-    Changes of volume that materials keep apart are not in it, see `CellPressures`.
-
-    Attributes:
-        work: Linear form.
-        slope: What of its derivative the work does not show: that of laws at points.
-        elastic: What bodies without a history store; 0 where there are none.
-        stored: What the others store.
-        dissipated: What they have dissipated.
-        told: Whether that is all: no material has a stress but no energy.
-    """
-
-    def __init__(
-        self,
-        model: Model,
-        laws: Mapping[str, Any],
-        heated: Mapping[str, Heated],
-        u: Any,
-        v: Any,
-        du: Any,
-        dx: Any,
-        full: int,
-    ) -> None:
-        weight = model.idealisation.weight(model.mesh)
-        work, self.elastic, self.stored, self.slope, self.dissipated = 0, 0, 0, 0, 0
-        self.told = True
-        for i, name in enumerate(model.body_names()):
-            if name not in laws:
-                continue
-            law, here = laws[name], dx(i, degree=full)
-            ideal = heated.get(name, model.idealisation)
-            stretch = heated[name].stretch if name in heated else 1.0
-            volume = weight * stretch**3
-            for density, degree in _stored(ideal, law, u):
-                part = volume * density * dx(i, degree=full if degree is None else degree)
-                self.elastic += part
-                work += ufl.derivative(part, u, v)
-            if isinstance(law, BodyPoints):
-                work += weight * stretch**2 * law.work(v) * here
-                self.slope += weight * stretch * law.slope(du, v) * here
-            elif not (law.linear or hasattr(law, "energy")):
-                stress = stretch**2 * ideal.seen(law.piola(u), u)
-                work += weight * ufl.inner(stress, ideal.gradient(v)) * here
-                self.told &= isinstance(law, AtPoints)
-            if isinstance(law, AtPoints):
-                self.told &= law.stores
-                self.stored += volume * law.stored * here
-                self.dissipated += weight * law.dissipated * here
-        self.work = work
-
-
-def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:
-    """Terms of the energy of a material from which its stress follows."""
-    if law.linear:
-        strain = ufl.sym(ideal.seen(ufl.grad(u), u))
-        parts = linear_parts(law, u)
-        return [(0.5 * ufl.inner(ideal.stress(s, u), strain), degree) for s, degree in parts]
-    terms = law.energy(u) if hasattr(law, "energy") else []
-    return [(ideal.seen(density, u), degree) for density, degree in terms]
