@@ -355,3 +355,47 @@ def test_a_section_of_a_body_that_relaxes(tmp_path, restart):
     assert len(foot) == (5 if restart else 3)
     assert np.allclose(foot, -outer, rtol=1e-7, atol=1e-12)
     assert abs(foot[-1]) > 0.1
+
+
+ONE_CELL = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [1, 1, 1]
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0.0
+
+[[step]]
+name = "press"
+increments = 1
+displacement = { "block.bottom" = { x = 0, y = 0, z = 0 }, "block.top" = { z = -0.01 } }
+
+[output]
+pictures = false
+
+[output.probe.middle]
+point = [0.5, 0.5, 0.25]
+"""
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+def test_a_point_where_a_process_has_no_nodes(tmp_path):
+    """Requirement: a point is probed where two of three processes have nothing of the mesh.
+
+    Source: the displacement of a bar, u = 0.25 times that of its top. Tolerance: round-off.
+    """
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    (tmp_path / "case.toml").write_text(ONE_CELL)
+    run = ["run", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out")]
+    command = ["mpirun", "-n", "3", sys.executable, "-m", "anisocontact", *run]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode == 0, done.stderr
+    table = np.genfromtxt(
+        tmp_path / "out" / "probes" / "middle.csv", delimiter=",", names=True, deletechars=""
+    )
+    assert table["displacement.z"] == pytest.approx(-0.0025, rel=1e-10)

@@ -213,8 +213,13 @@ def _interpolation(model: Any, points: Floats, field: str) -> tuple[Locals, Floa
     comm, mesh = model.mesh.comm, model.mesh
     cells, distance = closest_cells(mesh, points)
     away = np.array(comm.allgather(distance))
-    reach = OUTSIDE * float(np.ptp(mesh.geometry.x, axis=0).max(initial=0.0))
-    reach = max(comm.allgather(reach))
+    # not all processes have nodes
+    corners = (
+        mesh.geometry.x.min(axis=0, initial=np.inf),
+        mesh.geometry.x.max(axis=0, initial=-np.inf),
+    )
+    low, high = np.array(comm.allgather(corners)).swapaxes(0, 1)
+    reach = OUTSIDE * float((high.max(axis=0) - low.min(axis=0)).max())
     for point in points[away.min(axis=0) > reach]:
         shown = ", ".join(f"{v:g}" for v in point)
         raise InputError(f"({shown}) given, which is in no body", field)
