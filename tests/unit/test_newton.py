@@ -14,6 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.newton import Newton
+from anisocontact.solver.strategies.newton_iteration import NewtonIteration
 from anisocontact.solver.strategies.residual_history import PATIENCE, STUCK_OVER
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
@@ -50,6 +51,9 @@ class Valley:
         out.setValues([0, 1], [0, 1], [-1.0, 0.0, -2.0 * a * c, c])
         out.assemble()
         return False
+
+    def ease(self, _: float) -> None:
+        """Nothing flows."""
 
     def corrected(self, _: bool) -> AbstractContextManager[bool]:
         return nullcontext(False)
@@ -251,3 +255,30 @@ def test_a_residual_that_falls_is_waited_for(
     newton.close()
     assert result.iterations == most
     assert result.reason.startswith(f"no convergence in {most} Newton iterations")
+
+
+@pytest.mark.parametrize(
+    ("residuals", "compact", "share"),
+    [
+        ([5.0], True, 0.0),
+        ([1.0, 0.2], True, 0.06),
+        ([1.0, 4.0], True, 0.5),
+        ([1.0, 1e-3], True, 0.0),
+        ([1.0, 0.2], False, 0.0),
+    ],
+)
+def test_share_of_the_elastic_tangent(residuals, compact, share):
+    """Requirement: none in the first correction, near equilibrium and in slender bodies, else in
+    proportion to the residual up to a half. Source: `NewtonIteration`. Tolerance: rounding.
+    """
+    given: list[float] = []
+    system = Valley(1.0)
+    system.contact_term = Contacts([])
+    system.contact_term.compact = compact
+    system.ease = given.append  # type: ignore[method-assign]
+    iteration = NewtonIteration(system, lambda number, residual: None)
+    iteration.residuals.extend(residuals)
+    snes = PETSc.SNES().create(PETSc.COMM_SELF)
+    iteration.tangent(snes, system.new_vector(), system.new_tangent())
+    snes.destroy()
+    assert given == pytest.approx([share, 0.0])

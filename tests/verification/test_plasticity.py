@@ -120,6 +120,20 @@ def test_yields_where_it_should(name: str) -> None:
     assert (found.dissipated > 0.0).all()
 
 
+@pytest.mark.parametrize("name", CASES)
+def test_elastic_tangent(name: str) -> None:
+    """Requirement: `elastic_tangent` is the derivative where nothing flows, which Newton's method
+    takes a share of far from equilibrium. Source: the law at rest. Tolerance: rounding.
+    """
+    model, given = CASES[name]
+    law, rng = make_material(model, **given), np.random.default_rng(7)
+    state = PointState(
+        np.zeros((5, 3, 3)), _history(law, rng, 5, 0.0), 1.0, rng.normal(size=(5, 3))
+    )
+    for tangent in law.update(state).tangent:
+        np.testing.assert_allclose(tangent, law.elastic_tangent, atol=1e-12 * E)
+
+
 def _deviator(tensor: Floats) -> Floats:
     t = _symmetric(tensor)
     return np.asarray(t - np.trace(t, axis1=-2, axis2=-1)[:, None, None] / 3.0 * np.eye(3))

@@ -136,12 +136,13 @@ class LinearBulk:
     def commit(self, u: Vec) -> None:
         """Accept a state, which changes nothing."""
 
-    def tangent(self, out: Mat, *, again: bool = False) -> None:
+    def tangent(self, out: Mat, *, again: bool = False, elastic_share: float = 0.0) -> None:
         """Write the stiffness into a matrix.
 
         Args:
             out: A matrix that has room for it and may have more unknowns.
             again: Whether it may be what the last call has written: it is always that.
+            elastic_share: Of bodies that flow, which these do not.
         """
         out.zeroEntries()
         if not self._places.copy(out):

@@ -210,19 +210,20 @@ class NonlinearBulk:
         found = self._comm.allreduce(np.array(own))
         return dict(zip(self.histories, found.tolist(), strict=True))
 
-    def tangent(self, out: Mat, *, again: bool = False) -> None:
+    def tangent(self, out: Mat, *, again: bool = False, elastic_share: float = 0.0) -> None:
         """Write the tangent of the last `force` into a matrix.
 
         Args:
             out: A matrix that has room for it.
             again: Whether it is to be what the last call has written instead; with changes of
                 volume that are kept apart on one process.
+            elastic_share: Of bodies that flow, see `BodyPoints.write_tangent`.
         """
         if again:
             self._tangent.write(out, again=True)
         else:
             for body in self._points:
-                body.write_tangent()
+                body.write_tangent(elastic_share)
             with self._pressures.predicted():
                 self._tangent.write(out)
         self._pressures.add_tangent(out, again=again)

@@ -115,6 +115,12 @@ class Plastic(ElasticVolume, Isotropic):
         self._weights = weights[1:]
         self._tensors = (vectors[:, 1:].T @ _BASIS).reshape(5, 3, 3)
 
+    @property
+    def elastic_tangent(self) -> Floats:
+        """Derivative of the stress by the strain without flow, (3, 3, 3, 3), stress."""
+        basis = self._tensors.reshape(5, 9)
+        return (2.0 * self.shear * (basis.T @ basis)).reshape(3, 3, 3, 3)
+
     def _condition(self, field: str) -> Floats:
         """M along the axes of the material in the basis of this file, (6, 6)."""
         found = np.diag([1.5] * 6)

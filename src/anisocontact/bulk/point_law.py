@@ -76,7 +76,8 @@ class PointLaw(Protocol):
     """Protocol of a stress update at points, beside `linear = False` and `young`.
 
     A law that is elastic against a change of volume may have `volume(u)` of that part in UFL beside
-    it, see `ElasticVolume`.
+    it, see `ElasticVolume`; one that flows `elastic_tangent`, (3, 3, 3, 3), the derivative of its
+    stress without flow, see `BodyPoints.write_tangent`.
 
     Attributes:
         strain: Word for its strain, "small" or "logarithmic".
@@ -170,6 +171,7 @@ class BodyPoints(AtPoints):
     ) -> None:
         super().__init__(model, body, law.history, degree, heated)
         self._law, self._dt = law, dt
+        self._elastic: Floats | None = getattr(law, "elastic_tangent", None)
         self.small_strain = small_strain(law)
         self._volume, self._pressure = volume_of(law, u), pressure
         self._gradient = self._at_points(self._ideal.seen(ufl.grad(u), u))
@@ -233,11 +235,20 @@ class BodyPoints(AtPoints):
             self._write(self._energy_now, result.stored)
         return np.asarray(self._thermal.eval(self._mesh, self._cells)).reshape(-1, 2)
 
-    def write_tangent(self) -> None:
-        """Bring the tangent to where the stress is."""
+    def write_tangent(self, elastic_share: float = 0.0) -> None:
+        """Bring the tangent to where the stress is.
+
+        Args:
+            elastic_share: Share s of the elastic tangent in `(1 - s) C + s C_e`, of a law that has
+                one: what flows far from equilibrium is a thousand times softer than what has come
+                to rest in the end, and a correction with C alone goes far beyond that.
+        """
         strain, result = self._last
+        slope = result.tangent
+        if elastic_share and self._elastic is not None:
+            slope = (1.0 - elastic_share) * slope + elastic_share * self._elastic
         with np.errstate(invalid="ignore", over="ignore"):
-            self._write(self._slope, strain.tangent(result.stress, result.tangent))
+            self._write(self._slope, strain.tangent(result.stress, slope))
 
     def commit(self) -> None:
         """Accept the increment: the displacement and the time increment are those of its end."""

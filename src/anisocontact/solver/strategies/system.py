@@ -55,6 +55,10 @@ class System(Protocol):
         """
         ...
 
+    def ease(self, elastic_share: float) -> None:
+        """Let the next tangents have a share of the elastic one where bodies flow."""
+        ...
+
     @property
     def followed(self) -> FollowedPressures | None:
         """Pressures that follow corrections, if there are any."""

@@ -33,6 +33,9 @@ class AssembledSystem:
         """Pressures that follow corrections, if there are any."""
         return None
 
+    def ease(self, elastic_share: float) -> None:
+        """Let the next tangents have a share of the elastic one where bodies flow; nothing does."""
+
     def corrected(self, searching: bool) -> AbstractContextManager[bool]:
         """Around Newton's method: whether corrections are to be taken in full."""
         return nullcontext(False)

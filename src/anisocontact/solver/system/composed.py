@@ -70,6 +70,10 @@ class ComposedSystem(ReportedSystem):
     def followed(self) -> FollowedPressures | None:
         return self.bulk.volume.followed if self.bulk.volume is not None else None
 
+    @override
+    def ease(self, elastic_share: float) -> None:
+        self.assembly.bodies.elastic_share = elastic_share
+
     def constrained(self) -> Ints:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
         of_bodies = self.assembly.prescribed_of_bodies()

@@ -52,6 +52,7 @@ class Bodies(Term):
         unknowns: As given.
         scale: Mean diagonal of the tangent at rest, force/length.
         again: Whether `add_tangent` writes once more what it has written last.
+        elastic_share: Share of the elastic tangent where bodies flow, see `BodyPoints`.
         largest: Norm of `stiff` over all ranks in the largest state accepted so far, force. What is
             left of that state where it has gone back to zero is its rounding.
     """
@@ -65,7 +66,7 @@ class Bodies(Term):
         #: Temperatures and displacement of the accepted state, where bodies are heated.
         self._heat = dict.fromkeys(bulk.heated, 0.0)
         self._start: Vec | None = self._u.copy() if bulk.heated else None
-        self.again, self.largest = False, 0.0
+        self.again, self.elastic_share, self.largest = False, 0.0, 0.0
         #: Internal force of the last evaluation and where it was, and that of the accepted state.
         self._internal, self._internal_at = np.zeros(0), np.zeros(0)
         self._accepted: Floats | None = None
@@ -149,7 +150,7 @@ class Bodies(Term):
 
     @override
     def add_tangent(self, matrix: Mat) -> None:
-        self.bulk.tangent(matrix, again=self.again)
+        self.bulk.tangent(matrix, again=self.again, elastic_share=self.elastic_share)
         if not self.again:
             self._written = self._u.copy(), self._internal
 

@@ -94,8 +94,11 @@ class FormBulk:
     def commit(self, u: Vec) -> None:
         """Nothing: what the form remembers is the user's."""
 
-    def tangent(self, out: Mat, *, again: bool = False) -> None:
-        """Write the derivative at the values of the function, or what was written last."""
+    def tangent(self, out: Mat, *, again: bool = False, elastic_share: float = 0.0) -> None:
+        """Write the derivative at the values of the function, or what was written last.
+
+        A form has no other tangent, whatever the share of the elastic one is to be.
+        """
         self._tangent.write(out, again=again)
 
     def times(self, x: Vec) -> Vec:
