@@ -100,6 +100,20 @@ def test_shapes_of_variables(history: Any) -> None:
         UserLaw(Spring(history=history))
 
 
+def test_elastic_tangent() -> None:
+    """That of a law which flows is handed on; another shape is one line."""
+    law = Spring()
+    assert UserLaw(law).elastic_tangent is None
+    law.elastic_tangent = (ONE + ONE.swapaxes(2, 3)).tolist()  # type: ignore[attr-defined]
+    assert UserLaw(law).elastic_tangent == pytest.approx(ONE + ONE.swapaxes(2, 3))
+    law.elastic_tangent = np.eye(6)  # type: ignore[attr-defined]
+    with pytest.raises(
+        InputError, match=r"law Spring returned an array of shape \(6, 6\)"
+    ) as error:
+        UserLaw(law)
+    assert error.value.field == "elastic_tangent"
+
+
 @pytest.mark.parametrize("power", [0, 2])
 def test_a_body_without_stiffness_is_named(power: int) -> None:
     """Requirement: an energy that holds nothing at rest is said of its body, not of a penalty that

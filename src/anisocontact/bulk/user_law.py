@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import answered, read_only_view
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
@@ -27,7 +28,7 @@ class UserLaw:
 
     Args:
         law: Object with `update(state)` and `young`, and `strain` and `history` if it is not at
-            small strain or remembers anything; see `PointLaw`.
+            small strain or remembers anything, and `elastic_tangent` if it flows; see `PointLaw`.
 
     Raises:
         InputError: It has no such attributes, or fails at rest.
@@ -43,6 +44,10 @@ class UserLaw:
             text = f"{self.strain!r} given, allowed: {', '.join(STRAINS)}"
             raise InputError(text, f"{type(law).__name__}.strain")
         self.history = _checked_history(getattr(law, "history", {}), type(law).__name__)
+        elastic, who = getattr(law, "elastic_tangent", None), f"the law {type(law).__name__}"
+        self.elastic_tangent: Floats | None = (
+            None if elastic is None else answered(elastic, (3, 3, 3, 3), who, "elastic_tangent")
+        )
         before = {name: np.zeros((2, *shape)) for name, shape in self.history.items()}
         rest = self.update(PointState(np.zeros((2, 3, 3)), before, 0.0, np.zeros((2, 3))))
         if not np.isfinite(rest.stress).all():
