@@ -31,6 +31,7 @@ def bar(
     order: int = 2,
     faces: tuple[str, ...] = ("top",),
     shift: float = 0.0,
+    springs: dict[str, float] | None = None,
     **more: Any,
 ) -> tuple[list[Any], Any]:
     """A bar along z whose ends follow reference points in their middles, and these."""
@@ -42,7 +43,11 @@ def bar(
     model = build_box({"bar": BoxSpec((0, 0, 0), size, cells, "hexahedron", order)})
     at = {"top": size[2], "bottom": 0.0}
     middle = np.array([size[0] / 2 + shift, size[1] / 2, 0.0])
-    heads = [RigidBody(face, middle + np.array([0.0, 0.0, at[face]]), free=True) for face in faces]
+    points = [middle + np.array([0.0, 0.0, at[face]]) for face in faces]
+    heads = [
+        RigidBody(face, point, free=True, springs=springs)
+        for face, point in zip(faces, points, strict=True)
+    ]
     coupled = [CoupledFace(f"bar.{head.name}", head) for head in heads]
     return heads, Problem(model, {"bar": make_material(**material)}, coupled=coupled, **more)
 
@@ -158,9 +163,9 @@ def test_tangent_of_a_coupled_face(fe, material):
     """
     from anisocontact.solver import Spring, Step
 
-    springs = [Spring("pull", "bar.top", (3.0, 4.0, 5.0))]
-    (head,), problem = bar(material, (1, 1, 2), attached=springs, order=1)
-    head.springs[:] = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    attached = [Spring("pull", "bar.top", (3.0, 4.0, 5.0))]
+    springs = {"x": 1.0, "y": 2.0, "z": 3.0, "rx": 4.0, "ry": 5.0, "rz": 6.0}
+    _, problem = bar(material, (1, 1, 2), springs=springs, attached=attached, order=1)
     free = {"x": None, "ry": None, "rz": None}
     load = {"top": {"x": 1.0, "ry": 2.0}}
     problem.begin(Step("a", 1, {"bar.bottom": NOTHING}, motion={"top": free}, load=load))

@@ -44,13 +44,14 @@ def strip(
     cells: tuple[int, int] = (1, 4),
     order: int = 2,
     at: tuple[float, float, float] | None = None,
+    springs: dict[str, float] | None = None,
 ) -> tuple[list[RigidBody], Problem]:
     """A strip along y whose ends follow reference points, and these."""
     shape = make_shape("rectangle", origin=origin, size=size, cells=cells, order=order)
     model = build_mesh([Body("b", shape)], idealisation=ideal)
     middle = 0.0 if isinstance(ideal, Axisymmetric) else origin[0] + size[0] / 2.0
     places = {"top": (middle, origin[1] + size[1], 0.0), "bottom": (middle, origin[1], 0.0)}
-    heads = [RigidBody(face, at or places[face], free=True) for face in faces]
+    heads = [RigidBody(face, at or places[face], free=True, springs=springs) for face in faces]
     coupled = [CoupledFace(f"b.{head.name}", head) for head in heads]
     return heads, Problem(model, {"b": material}, coupled=coupled)
 
@@ -178,8 +179,15 @@ def test_tangent(fe, ideal, free):
     Requirement: exact tangent at a random state. Source: Taylor. Tolerance: 4 (1 + O(h^2)), 0.15.
     """
     origin = (0.0, 0.0) if isinstance(ideal, Axisymmetric) else (1.0, 0.0)
-    (head,), problem = strip(ideal, RUBBER, origin=origin, size=(1.0, 2.0), cells=(2, 2), order=1)
-    head.springs[:] = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    _, problem = strip(
+        ideal,
+        RUBBER,
+        origin=origin,
+        size=(1.0, 2.0),
+        cells=(2, 2),
+        order=1,
+        springs={"x": 1.0, "y": 2.0, "z": 3.0, "rx": 4.0, "ry": 5.0, "rz": 6.0},
+    )
     motion, load = {"top": dict.fromkeys(free)}, {"top": dict.fromkeys(free, 1.0)}
     problem.begin(Step("a", 1, CLAMP, motion=motion, load=load))
     problem.set_load_factor(1.0, 1.0)
