@@ -52,7 +52,7 @@ class Valley:
         out.assemble()
         return False
 
-    def ease(self, _: float) -> None:
+    def take_elastic_share(self, _: float) -> None:
         """Nothing flows."""
 
     def corrected(self, _: bool) -> AbstractContextManager[bool]:
@@ -275,7 +275,7 @@ def test_share_of_the_elastic_tangent(residuals, compact, share):
     system = Valley(1.0)
     system.contact_term = Contacts([])
     system.contact_term.compact = compact
-    system.ease = given.append  # type: ignore[method-assign]
+    system.take_elastic_share = given.append  # type: ignore[method-assign]
     iteration = NewtonIteration(system, lambda number, residual: None)
     iteration.residuals.extend(residuals)
     snes = PETSc.SNES().create(PETSc.COMM_SELF)

@@ -82,12 +82,12 @@ class NewtonIteration:
         Raises:
             InputError: It is not symmetric, and the factorisation of the options needs that.
         """
-        self._system.ease(self._elastic_share())
+        self._system.take_elastic_share(self._elastic_share())
         try:
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 grown = self._system.tangent(x, matrix)
         finally:
-            self._system.ease(0.0)
+            self._system.take_elastic_share(0.0)
         check_symmetric(snes.getKSP(), matrix)
         return grown
 

@@ -55,7 +55,7 @@ class System(Protocol):
         """
         ...
 
-    def ease(self, elastic_share: float) -> None:
+    def take_elastic_share(self, elastic_share: float) -> None:
         """Let the next tangents have a share of the elastic one where bodies flow."""
         ...
 

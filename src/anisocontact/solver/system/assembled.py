@@ -33,7 +33,7 @@ class AssembledSystem:
         """Pressures that follow corrections, if there are any."""
         return None
 
-    def ease(self, elastic_share: float) -> None:
+    def take_elastic_share(self, elastic_share: float) -> None:
         """Let the next tangents have a share of the elastic one where bodies flow; nothing does."""
 
     def corrected(self, searching: bool) -> AbstractContextManager[bool]:

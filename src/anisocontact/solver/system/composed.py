@@ -71,7 +71,7 @@ class ComposedSystem(ReportedSystem):
         return self.bulk.volume.followed if self.bulk.volume is not None else None
 
     @override
-    def ease(self, elastic_share: float) -> None:
+    def take_elastic_share(self, elastic_share: float) -> None:
         self.assembly.bodies.elastic_share = elastic_share
 
     def constrained(self) -> Ints:
