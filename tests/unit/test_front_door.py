@@ -51,6 +51,16 @@ def test_names_of_before(package: str, before: str, today: str) -> None:
         _ = anisocontact.solver.bare
 
 
+def test_a_module_of_before() -> None:
+    """It has what is in that of today, by the names of before as well."""
+    today = importlib.import_module("anisocontact.base.load_curve")
+    with pytest.warns(DeprecationWarning, match="^anisocontact.base.course has moved: import from"):
+        sys.modules.pop("anisocontact.base.course", None)
+        before = importlib.import_module("anisocontact.base.course")
+    with pytest.warns(DeprecationWarning, match="^Course is now LoadCurve$"):
+        assert before.Course is today.LoadCurve
+
+
 @pytest.mark.parametrize(
     ("before", "today"),
     [("inner_forces", "internal_forces"), ("flowed", "regularised"), ("guides", "inclined")],

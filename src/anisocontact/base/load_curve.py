@@ -14,6 +14,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
+from anisocontact.base.renamed import renamed
 from anisocontact.base.sizes import RANGE, out_of_range
 from anisocontact.base.typed import is_number, typed
 
@@ -336,3 +337,7 @@ def path_cut_off(curves: Sequence[LoadCurve], duration: float, increments: int) 
     both = zip(*(curve._seen(duration, increments) for curve in curves), strict=True)
     way, seen = (np.linalg.norm(np.diff(axes, axis=1), axis=0).sum() for axes in both)
     return float(1.0 - seen / way) if way > 0.0 else 0.0
+
+
+def __getattr__(name: str) -> Any:
+    return renamed(__name__, name)
