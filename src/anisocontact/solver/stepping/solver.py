@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 
 from anisocontact.base.blas_threads import with_one_thread
@@ -148,8 +149,10 @@ class Solver(Uncopied, changing="place doubtful"):
 
         Raises:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
-            InputError: Another solver has begun a step of the problem meanwhile.
+            InputError: Another solver has begun a step of the problem meanwhile, or this one was
+                restored or has begun another run, which alone goes on.
         """
+        self._end_last()
         self._on_iteration, self._on_cut = on_iteration, on_cut
         note = on_note or (lambda _: None)
         noted = tell_script if on_note is None else lambda text: note(f"warning: {text}")
@@ -181,7 +184,7 @@ class Solver(Uncopied, changing="place doubtful"):
 
     @typed
     def restore(self, kept: Persistent) -> None:
-        """Go on from what `persistent` gave; `run` continues there.
+        """Go on from what `persistent` gave; a `run` that begins now continues there.
 
         Args:
             kept: The state, of a problem that was made of the same, with the same steps so far.
@@ -192,6 +195,7 @@ class Solver(Uncopied, changing="place doubtful"):
         place = RunPosition.restored(kept.common, self.limits)
         size, begun = size_of(self.problem.model.positions), place.steps_begun
         check_run(kept, self._made_of, self.problem.persistent(), begun, size)
+        self._end_last()
         self._turns.restore(kept.common)
         self.problem.restore(kept, self.steps[:begun], place.stopped)
         self._begun = self.problem.begun
@@ -222,6 +226,7 @@ class Solver(Uncopied, changing="place doubtful"):
                     for text in (*unread, *warnings.of(accepted)):
                         warn(text)
                     yield accepted
+                    self._check_last(newton)
                 if (end := self.place.ended_at) is not None:
                     self.problem.end_at(end)
                 self.place = self.place.after(step)
@@ -229,9 +234,12 @@ class Solver(Uncopied, changing="place doubtful"):
             self.problem.together.met()
             raise
         finally:
-            self._newton, self._kept = None, {}
-            if not self.problem.together.apart:
-                newton.close()
+            if self._newton is not newton:
+                pass  # closed by what has ended this run
+            elif self.problem.together.apart or sys.is_finalizing():
+                self._newton = None  # others do not come along, or the libraries are gone
+            else:
+                self._end_last()
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
         """Sub-increment by sub-increment to the end of the step, or to its event."""
@@ -297,6 +305,18 @@ class Solver(Uncopied, changing="place doubtful"):
         if self._begun not in (None, self.problem.begun):
             text = "another solver has begun a step of it since: one at a time, each to its end"
             raise InputError(text, field="problem")
+
+    def _end_last(self) -> None:
+        """End the run that goes on, if there is one; the problem is brought up to date."""
+        if self._newton is not None:
+            newton, self._newton, self._kept = self._newton, None, {}
+            newton.close()
+
+    def _check_last(self, newton: IncrementSolver) -> None:
+        """Refuse to go on with a run that a restored state or another run has ended."""
+        if self._newton is not newton:
+            text = "it was restored, or has begun another run, since this run: begin a new one"
+            raise InputError(text, field="solver")
 
     def _slides_before_end(self, step: Step, events: EventWatch) -> bool:
         """Whether friction cannot hold the loads where a step that ends with sliding goes next."""

@@ -298,13 +298,16 @@ class Condensed:
         return self._system
 
     def close(self) -> None:
-        """Bring the problem up to date and give back the memory of the factors."""
-        self.recover()
+        """Bring the problem up to date, unless another run goes on in it, and free the factors."""
+        ours = self._problem.reduction is self
+        if ours:
+            self.recover()
         if self._bulk is not None:
             self._bulk.close()
         self._bulk = self._system = None
-        self._problem.reduce_by(None)
-        self._problem.stabilisation.confine(None)
+        if ours:
+            self._problem.reduce_by(None)
+            self._problem.stabilisation.confine(None)
 
     def _nodal(self) -> Floats:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
