@@ -19,6 +19,7 @@ from anisocontact.solver.stepping.overload import (
     reason_of,
     too_much_load,
 )
+from anisocontact.solver.stepping.pressed_points import moves
 from anisocontact.solver.stepping.pulled_out import pulled_out
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
@@ -53,6 +54,9 @@ class Failures:
     def hopeless(self, step: Step, place: RunPosition, cuts: int) -> bool:
         """Whether no cut-back helps: nothing could hold a body where it touches.
 
+        Bodies at rest that the first small loads carry through what they rest on fall under smaller
+        ones as well, as loads that grow together point where they do from the first.
+
         Args:
             step: The step.
             place: Where in it the sub-increment failed.
@@ -60,6 +64,9 @@ class Failures:
         """
         if cuts < MANY:
             return False
+        at_rest = place.step == 0 and place.reached(step) == 0.0
+        if at_rest and place.lost is not None and not moves(self._problem):
+            return True
         end, now = place.control.increment / step.increments, place.reached(step)
         return any(one.certain for one in unbalanced(self._problem, end, now))
 

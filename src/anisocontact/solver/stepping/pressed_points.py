@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.stepping.driven import Driven
@@ -13,6 +13,8 @@ from anisocontact.solver.system.problem import Problem
 
 #: Share of the loads that presses a body and is what rounding of its place makes of a touch.
 ROUNDED = 1e-9
+#: Gap of a round body a facet away from where it touches, over the height of the arcs.
+ONE_AWAY = 4.0
 
 
 def pressed_points(problem: Problem, body: Driven) -> tuple[PressedPoints | None, bool, bool]:
@@ -24,7 +26,7 @@ def pressed_points(problem: Problem, body: Driven) -> tuple[PressedPoints | None
     """
     found = []
     for contact, side in body.contacts:
-        rows = _rows(problem, body, contact, side)
+        rows = _rows(problem, body, contact, side, contact.meeting())
         if rows is None:
             return None, False, False
         found.append(rows)
@@ -48,19 +50,35 @@ def touching_points(problem: Problem, body: Driven) -> dict[Contact, PressedPoin
     """Where a body touches, pressed or not, with areas for forces, of each contact; on all ranks.
 
     Those of a contact of two bodies are in the same order for both. A contact with a law in Python
-    is left out.
+    is left out. Round bodies of flat facets that are apart by less than the arcs over these count
+    as touching, see `_below_arcs`.
     """
     found = {}
     for contact, side in body.contacts:
-        rows = _rows(problem, body, contact, side)
+        rows = _rows(problem, body, contact, side, _below_arcs(problem, contact))
         if rows is not None:
             arms, normal, _, area, rubs = (column[rows[3] > 0.0] for column in rows)
             found[contact] = PressedPoints(arms, normal, area, rubs)
     return found
 
 
+def _below_arcs(problem: Problem, contact: Contact) -> Flags:
+    """Points that touch, or where none does and arcs over facets would, those next to there, (n,).
+
+    The gap of a round body a facet away from where it touches is four times as high as its arcs;
+    the two points beside that place, and with them all places between, are among those below.
+    """
+    last, meeting = contact.last, contact.meeting()
+    gap = np.where(contact.master.located(last.state), last.gap, np.inf)
+    own = (bool(meeting.any()), float(gap.min(initial=np.inf)))
+    touches, least = zip(*problem.comm.allgather(own), strict=True)
+    if any(touches) or min(least) >= contact.sagitta:
+        return meeting
+    return np.asarray(gap <= ONE_AWAY * contact.sagitta)
+
+
 def _rows(
-    problem: Problem, body: Driven, contact: Contact, side: float
+    problem: Problem, body: Driven, contact: Contact, side: float, touching: Flags
 ) -> tuple[Floats, Floats, Floats, Floats, Floats] | None:
     """Arms, normals, normal forces, areas that touch and friction of all slave points, all ranks.
 
@@ -74,7 +92,7 @@ def _rows(
         (contact.points - body.centre) / body.size,
         side * last.normal,
         areas * last.pressure,
-        areas * contact.meeting(),
+        areas * touching,
         _resistance(friction, last.directions_friction, last.normal),
     )
     arms, normal, force, area, rubs = (

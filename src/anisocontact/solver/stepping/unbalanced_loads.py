@@ -69,8 +69,11 @@ def _groups(bodies: Sequence[Driven]) -> Iterator[Sequence[Driven]]:
 def _at_rest(problem: Problem, bodies: Sequence[Driven]) -> bool:
     """Whether all of their contacts touch and none presses."""
     for body in bodies:
-        points, touched, opened = pressed_points(problem, body)
-        if points is None or touched or opened:
+        points = touching_points(problem, body)
+        known = body.contacts and all(contact in points for contact, _ in body.contacts)
+        if not known or any(not len(one.force) for one in points.values()):
+            return False
+        if pressed_points(problem, body)[1]:
             return False
     return True
 
