@@ -174,7 +174,7 @@ def test_a_function_that_ends_the_program(case, capsys):
         (
             'kind = "circle"\nradius = 0.01',
             'kind = "table"\ntime = [0, 2, 1]\nx = [0, 1, 2]',
-            "path.round.time: two or more numbers that grow needed",
+            "path.round.time: 1 after 2 given, two or more numbers",
         ),
         (
             'kind = "circle"\nradius = 0.01',

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -40,8 +41,10 @@ def check_times(times: Sequence[float], columns: dict[str, Sequence[float]], fie
         InputError: Names what is wrong.
     """
     path = f"{field}." if field else ""
-    if len(times) < 2 or not np.all(np.diff(times) > 0.0):
-        raise InputError("two or more numbers that grow needed", f"{path}time")
+    falls = [f"{b:.6g} after {a:.6g}" for a, b in pairwise(times) if not b > a]
+    if len(times) < 2 or falls:
+        given = falls[0] if falls else f"{len(times)} numbers"
+        raise InputError(f"{given} given, two or more numbers that grow needed", f"{path}time")
     for name, values in columns.items():
         if len(values) != len(times):
             text = f"{len(values)} numbers given, {len(times)} needed, one for each time"

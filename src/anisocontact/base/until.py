@@ -76,7 +76,9 @@ class Until:
             self.event is not None and "event" not in allowed
         ):
             place = self.name if self.measure is not None else given[0]
-            raise InputError(f"with {place} one of {', '.join(allowed)} is needed", "until")
+            twice = "event and value given, " if self.event is not None is not self.value else ""
+            text = f"{twice}with {place} one of {', '.join(allowed)} is needed"
+            raise InputError(text, "until")
         if self.event is not None and self.event not in CONTACT_EVENTS:
             text = f"{self.event!r} given, must be one of {', '.join(CONTACT_EVENTS)}"
             raise InputError(text, "until.event")

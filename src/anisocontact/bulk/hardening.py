@@ -125,12 +125,20 @@ def make_hardening(given: Mapping[str, list[float]], field: str = "") -> Hardeni
         raise InputError(f"{curve.size} numbers given, pairs needed", f"{place}flow_curve")
     strains, stresses = curve.reshape(-1, 2).T
     if strains[0] != 0.0 or (np.diff(strains) <= 0.0).any():
-        text = "strains have to rise from 0"
+        text = f"{_first_fall(strains, np.less_equal)} given, strains have to rise from 0"
         raise InputError(text, f"{place}flow_curve")
     if stresses[0] <= 0.0 or (np.diff(stresses) < 0.0).any():
-        text = "stresses have to be > 0 and must not fall"
+        text = f"{_first_fall(stresses, np.less)} given, stresses have to be > 0 and must not fall"
         raise InputError(text, f"{place}flow_curve")
     return FlowCurve(strains, stresses)
+
+
+def _first_fall(values: Floats, falls: np.ufunc) -> str:
+    """The first value of a column that does not go on as it has to, or the very first."""
+    wrong = np.flatnonzero(falls(values[1:], values[:-1]))
+    if not len(wrong):
+        return f"{values[0]:.6g} first"
+    return f"{values[wrong[0] + 1]:.6g} after {values[wrong[0]]:.6g}"
 
 
 def check_recovery(given: Mapping[str, list[float]], field: str = "") -> None:

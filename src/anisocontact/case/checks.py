@@ -29,8 +29,10 @@ from anisocontact.surfaces import Surface
 
 def check(case: Case) -> Iterator[InputError]:
     """Mistakes that can be found without a mesh, each as an error that is not raised."""
+    if wrong := list(_names(case)):  # of which all else would follow
+        yield from wrong
+        return
     yield from _mesh(case)
-    yield from _names(case)
     for name, section in case.material.items():
         if not isinstance(section, MaterialTable):  # which `build` looks at
             _, error = _tried(objects.material, section, f"material.{name}")

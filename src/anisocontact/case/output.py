@@ -56,6 +56,10 @@ class ProbeSection(Section):
             yield "to", "given without a point"
         if self.to is not None and self.to == self.point:
             yield "to", "the same point as `point`, a line has two ends"
+        if self.to is None and "count" in self.model_fields_set:
+            yield "count", "given without `to`, the other end of a line"
+        if not self.quantities:
+            yield "quantities", "[] given, one or more needed"
         if self.to is not None and self.count < 2:
             yield "count", f"{self.count} given, a line has at least 2"
 

@@ -71,7 +71,9 @@ def _add_cases(commands: Commands) -> None:
         "read a case and its mesh, run the Python files it names, and say what it contains; "
         "or read a mesh file, and say what is in it",
     )
-    check.add_argument("case", metavar="CASE.toml", help="the case file, or a mesh file")
+    check.add_argument(
+        "case", type=_name, metavar="CASE.toml", help="the case file, or a mesh file"
+    )
     check.add_argument(
         "--no-python",
         action="store_true",
@@ -81,7 +83,7 @@ def _add_cases(commands: Commands) -> None:
     _add_convert(commands)
 
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
-    report.add_argument("folder", metavar="DIR", help="results folder of `run`")
+    report.add_argument("folder", type=_name, metavar="DIR", help="results folder of `run`")
 
 
 def _add_convert(commands: Commands) -> None:
@@ -93,11 +95,13 @@ def _add_convert(commands: Commands) -> None:
     )
     convert.add_argument(
         "source",
+        type=_name,
         metavar="IN",
         help="a mesh file, a case file for its mesh, a results folder, or a deck .inp",
     )
     convert.add_argument(
         "target",
+        type=_name,
         metavar="OUT",
         help="file to write: .msh of gmsh, .vtu or .vtk; .vtkhdf of a results folder; .toml of a "
         "deck, which is a case file",
@@ -116,7 +120,9 @@ def _add_points(commands: Commands) -> None:
         "evaluate alone a point at which a law failed: state, trial, traction, tangent; "
         "runs the Python file of a law of your own",
     )
-    replay.add_argument("file", metavar="FILE.json", help="failed_point.json of a results folder")
+    replay.add_argument(
+        "file", type=_name, metavar="FILE.json", help="failed_point.json of a results folder"
+    )
 
 
 def _add_lists(commands: Commands) -> None:
@@ -250,4 +256,11 @@ def _output_arguments(parser: argparse.ArgumentParser) -> argparse._MutuallyExcl
 
 
 def _case_argument(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", metavar="CASE.toml", help="the case file")
+    parser.add_argument("case", type=_name, metavar="CASE.toml", help="the case file")
+
+
+def _name(given: str) -> str:
+    """The name of a file or folder; an empty one is that of a variable that was never set."""
+    if not given.strip():
+        raise argparse.ArgumentTypeError(f"{given!r} given, the name of a file or folder needed")
+    return given

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -12,6 +12,45 @@ from anisocontact.base.errors import InputError
 #: A cell and how many nodes it has; nodes and body of each element.
 type Kind = tuple[str, int]
 type Elements = tuple[Ints, list[str]]
+
+#: How many nodes elements of a kind may have, that of its corners first.
+COUNTS = {
+    "triangle": (3, 6),
+    "quadrilateral": (4, 8, 9),
+    "tetrahedron": (4, 10),
+    "pyramid": (5, 13, 14),
+    "prism": (6, 15, 18),
+    "hexahedron": (8, 20, 27),
+}
+
+
+def check_elements(cell: str, nodes: Ints, bodies: Sequence[str]) -> None:
+    """Refuse what a reader adds if it is no list of elements.
+
+    Args:
+        cell: Kind of the elements.
+        nodes: Nodes of each, (n, k).
+        bodies: Name of the body of each, (n,).
+
+    Raises:
+        InputError: An unknown kind, another number of nodes than its elements have, numbers that
+            are not whole, or not a body for each element.
+
+    Example:
+        >>> check_elements("tetrahedron", np.array([[0, 1, 2]]), ["body"])
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: nodes: int64 of shape (1, 3) given, ...
+    """
+    if cell not in COUNTS:
+        raise InputError(f"{cell!r} given, must be one of {', '.join(COUNTS)}", "cell")
+    given = np.asarray(nodes)
+    if given.ndim != 2 or given.dtype.kind not in "iu" or given.shape[1] not in COUNTS[cell]:
+        allowed = " or ".join(map(str, COUNTS[cell]))
+        text = f"{given.dtype} of shape {given.shape} given, whole numbers (n, {allowed}) needed"
+        raise InputError(text, "nodes")
+    if isinstance(bodies, str) or len(bodies) != len(given):
+        of = repr(bodies) if isinstance(bodies, str) else f"{len(bodies)} names"
+        raise InputError(f"{of} given, one for each of {len(given)} elements needed", "bodies")
 
 
 def in_words(kinds: Iterable[Kind]) -> str:
@@ -53,6 +92,8 @@ def check_nodes(kinds: Mapping[Kind, Elements], points: Floats) -> None:
     Raises:
         InputError: There are such cells.
     """
+    if np.ndim(points) != 2 or np.shape(points)[1] != 3:
+        raise InputError(f"an array of shape {np.shape(points)} given, (nodes, 3) needed", "points")
     used = np.unique(np.concatenate([nodes.ravel() for nodes, _ in kinds.values()]))
     lost = used[(used < 0) | (used >= len(points))]
     if len(lost):

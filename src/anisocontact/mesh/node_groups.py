@@ -45,7 +45,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> L
         [[0.5, 0.0, 1.0]]
     """
     nodes, x, size = _nodes_of(model, body, field)
-    away = np.linalg.norm(x - points(point, 3, field or "point", rows=1), axis=1)
+    away = np.linalg.norm(x - _place(point, field or "point"), axis=1)
     least = min(model.mesh.comm.allgather(float(away.min(initial=np.inf))))
     if least > FAR * size:
         text = f"the nearest node of {body!r} is {least:.4g} off, the body {size:.4g} large"
@@ -85,9 +85,8 @@ def nodes_along(
     """
     nodes, x, size = _nodes_of(model, body, field)
     place = f"{field}." if field else ""
-    (first,), (last,) = (
-        points(given, 3, f"{place}{name}", rows=1)
-        for name, given in (("start", start), ("end", end))
+    first, last = (
+        _place(given, f"{place}{name}") for name, given in (("start", start), ("end", end))
     )
     way = last - first
     length = float(np.linalg.norm(way))
@@ -132,3 +131,15 @@ def _nodes_of(model: Any, body: str, field: str) -> tuple[Locals, Floats, float]
     low = np.min(comm.allgather(x.min(axis=0, initial=np.inf)), axis=0)
     high = np.max(comm.allgather(x.max(axis=0, initial=-np.inf)), axis=0)
     return nodes, x, float(np.max(high - low))
+
+
+def _place(given: npt.ArrayLike, name: str) -> Floats:
+    """A point, (3,).
+
+    Raises:
+        InputError: Another shape, or numbers that are not finite.
+    """
+    (point,) = points(given, 3, name, rows=1)
+    if not np.isfinite(point).all():
+        raise InputError(f"{point.tolist()} given, finite numbers needed", name)
+    return np.asarray(point)

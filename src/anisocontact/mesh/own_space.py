@@ -117,6 +117,9 @@ def _numbers(name: str, given: Any) -> Locals:
     found = np.asarray(given)
     if found.size == 0:
         return np.zeros(0, dtype=np.int32)
+    if isinstance(given, int | np.integer):
+        text = f"{given} given without `tags`, MeshTags of facets that have this value"
+        raise InputError(text, name)
     if found.ndim != 1 or found.dtype.kind not in "iu":
         shape = f"{found.ndim} axes of {found.dtype}"
         raise InputError(f"{shape} given, a list of facet numbers needed", name)

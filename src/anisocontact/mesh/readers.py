@@ -8,6 +8,7 @@ from typing import Any
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
+from anisocontact.base.python_file import where_failed
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.cad import CAD, cad_arrays
@@ -83,7 +84,7 @@ No such file or directory
 
     def arrays(path: Path, bodies: Sequence[str] | None, field: str, comm: Any) -> MeshArrays:
         try:
-            return read(path).arrays(bodies).shared(comm)
+            return _read(read, path).arrays(bodies).shared(comm)
         except InputError as problem:
             raise InputError(f"mesh file {str(path)!r}: {problem}", field) from None
         except OSError as problem:
@@ -91,6 +92,26 @@ No such file or directory
             raise InputError(text, field) from None
 
     return arrays
+
+
+def _read(read: Callable[[Path], WholeMesh], path: Path) -> WholeMesh:
+    """What a reader returns, which may be a function of a user's.
+
+    Raises:
+        InputError: That function failed, or returned something else.
+    """
+    who = f"the reader {getattr(read, '__name__', type(read).__name__)}"
+    try:
+        found = read(path)
+    except (InputError, OSError):
+        raise
+    except (Exception, SystemExit) as error:
+        if getattr(read, "__module__", "").partition(".")[0] == __name__.partition(".")[0]:
+            raise  # one of the project's, whose mistake is none of the user's
+        raise InputError(f"{who} failed: {where_failed(error)}") from error
+    if not isinstance(found, WholeMesh):
+        raise InputError(f"{who} returned {type(found).__name__}, a WholeMesh needed")
+    return found
 
 
 def is_mesh(path: Path) -> bool:

@@ -182,6 +182,10 @@ def with_groups(mesh: MeshArrays, groups: Mapping[str, Sequence[Selector]]) -> M
     facets = dict(mesh.facets)
     for name, chosen in groups.items():
         body, dot, group = name.rpartition(".")
+        if not group:
+            raise InputError(f'{name!r} given, "body.group" or "group" needed', name)
+        if not chosen:
+            raise InputError("no selector given, one or more needed", name)
         if dot and body not in names:
             raise InputError(f"no body {body!r}; there are: {', '.join(names)}", name)
         found = {}
@@ -192,12 +196,21 @@ def with_groups(mesh: MeshArrays, groups: Mapping[str, Sequence[Selector]]) -> M
                 found[f"{own}.{group}"] = part.nodes[mask]
         found = {full: rows for full, rows in found.items() if len(rows)}
         if not found:
-            raise InputError("no facet at the boundary is chosen", name)
+            text = "no facet at the boundary is chosen"
+            raise InputError(f"{text}, which lies {_between(boundary, names, body)}", name)
         for full, rows in found.items():
             if full in facets:
                 raise InputError(f"{full!r} is a group already", name)
             facets[full] = np.array_split(rows, mesh.comm.size)[mesh.comm.rank]
     return replace(mesh, facets=facets)
+
+
+def _between(boundary: Boundary, names: Sequence[str], body: str) -> str:
+    """Between which corners facets lie: those of a body, or all where none is named."""
+    own = boundary.bodies == names.index(body) if body else slice(None)
+    places = boundary.corners[own].reshape(-1, 3) + 0.0  # no -0
+    low, high = (", ".join(f"{x:.4g}" for x in f(axis=0)) for f in (places.min, places.max))
+    return f"between ({low}) and ({high})"
 
 
 def _flags(select: Selector, boundary: Boundary, group: str) -> Flags:
@@ -281,7 +294,7 @@ def _cylinder(
 )
 def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Flags:
     unit = np.array(direction) / np.linalg.norm(direction)
-    return np.asarray(boundary.normals @ unit >= np.cos(angle))
+    return np.asarray(boundary.normals @ unit >= _least_cosine(angle))
 
 
 @register_selector(
@@ -304,9 +317,14 @@ def _nearest(boundary: Boundary, point: Sequence[float], angle: float) -> Flags:
     rank = np.lexsort(edges.T)
     same = np.all(edges[rank][1:] == edges[rank][:-1], axis=1)
     pairs = np.column_stack([facet[rank][:-1], facet[rank][1:]])[same]
-    smooth = np.einsum("pi,pi->p", *boundary.normals[pairs.T]) >= np.cos(angle)
+    smooth = np.einsum("pi,pi->p", *boundary.normals[pairs.T]) >= _least_cosine(angle)
     part = connected(len(boundary.vertices), pairs[smooth])
     return np.asarray(part == part[_facet_at(boundary, np.array(point))])
+
+
+def _least_cosine(angle: float) -> float:
+    """Cosine of a largest angle between directions, which differ by half a turn at most."""
+    return math.cos(min(angle, math.pi))
 
 
 def _facet_at(boundary: Boundary, point: Floats) -> int:

@@ -21,6 +21,7 @@ from anisocontact.mesh.elements import (
     Kind,
     check_apart,
     check_degenerate,
+    check_elements,
     check_nodes,
     check_single,
     in_words,
@@ -83,7 +84,11 @@ class WholeMesh:
             cell: Kind of the elements, such as "hexahedron".
             nodes: Nodes of each, in the order of VTK, (n, k).
             bodies: Name of the body of each, (n,); "" for none.
+
+        Raises:
+            InputError: An unknown kind, or nodes or bodies that are none of such elements.
         """
+        check_elements(cell, nodes, bodies)
         self.cells.append((cell, nodes))
         self.bodies.append(bodies)
 

@@ -231,6 +231,8 @@ class Results:
 
     def _file(self, name: str, index: int) -> Path:
         listed = self._listed(name)
+        if not isinstance(index, int | np.integer):
+            raise InputError(f"{index!r} given, a whole number needed", "index")
         if not -len(listed) <= index < len(listed):
             text = f"{index} given, '{self.folder / name}' lists {len(listed)} times"
             raise InputError(text, "index")
