@@ -123,6 +123,8 @@ def _unkept(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for group, depth in accepted.crossed.items():
         name = group.partition(".")[0]
         yield f"crossed {group}", f"body {name!r} {CROSSED.format(group=group, depth=depth)}"
+    for name, moved in accepted.across.items():
+        yield from ((f"across {name} {one.plane}", f"contact {name!r}: {one}") for one in moved)
     for name, (count, place) in accepted.folded.items():
         cells = "a cell is" if count == 1 else f"{count} cells are"
         at = "({:.4g}, {:.4g}, {:.4g})".format(*place)

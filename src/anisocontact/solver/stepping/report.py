@@ -12,6 +12,7 @@ from anisocontact.base.arrays import by_place
 from anisocontact.base.shown import shown
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.border_watch import WithoutSlip
+from anisocontact.solver.stepping.moved_across import MovedAcross
 from anisocontact.solver.stepping.rolling_watch import Stride
 from anisocontact.solver.stepping.turned_faces import TurnedFace
 from anisocontact.solver.system.culprit import Culprit
@@ -81,6 +82,8 @@ class Accepted:
         without_slip: Slave points that came to their master in it, or over its border, and carry
             no friction, by name of the contact; contacts without any are left out.
         crossed: How far bodies have gone through their planes of symmetry, by facet group, length.
+        across: How far rigid bodies have moved across planes of symmetry where slaves touch them
+            there, by name of the contact; contacts without any are left out.
         folded: Cells with a corner where `det F <= 0`, how many and where the first is, by body.
         unstable: Whether the equilibrium is not stable, as far as the strategy can tell.
         event: What has happened where an event ends the step here, in words.
@@ -123,6 +126,7 @@ class Accepted:
     faces: dict[str, list[TurnedFace]] = field(default_factory=dict)
     without_slip: dict[str, WithoutSlip] = field(default_factory=dict)
     crossed: dict[str, float] = field(default_factory=dict)
+    across: dict[str, list[MovedAcross]] = field(default_factory=dict)
     folded: dict[str, tuple[int, tuple[float, float, float]]] = field(default_factory=dict)
     unstable: bool = False
     event: str = ""

@@ -23,6 +23,7 @@ from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.increment_warnings import IncrementWarnings
+from anisocontact.solver.stepping.moved_across import AcrossWatch
 from anisocontact.solver.stepping.overload import (
     AT_LIMIT,
     least_halved,
@@ -119,7 +120,7 @@ class Solver(Uncopied, changing="place doubtful"):
         self._energy = EnergyWatch(problem)
         self._cut_faces, self._rolling = CutFaceWatch(problem), RollingWatch(problem)
         self._faces = TurnedFaceWatch(problem)
-        self._symmetry = SymmetryWatch(problem)
+        self._symmetry, self._across = SymmetryWatch(problem), AcrossWatch(problem)
         self._turns = TurnWatch()
         self._predictor = Predictor(problem)
         self._failures = Failures(problem, self.doubtful)
@@ -414,6 +415,7 @@ class Solver(Uncopied, changing="place doubtful"):
             faces=self._faces.faces(),
             without_slip=without_slip(self.problem),
             crossed=self._symmetry.crossed(),
+            across=self._across.moved(),
             folded=folded_by_deformation(self.problem),
             unstable=outcome.result.unstable and told_if_unstable(self.problem),
             event=events.text if events.happened else "",
