@@ -66,11 +66,26 @@ resultant = { glue = { body = "upper", point = [0, 0, 1.1], normal = [0, 0, 1] }
             "tie[0]: same pair as contact[0]: what is glued cannot slide",
         ),
         ('"lower.bottom" = { x', '"upper.bottom" = { x', "tie[0]: its slave nodes are held"),
+        (
+            '"lower.bottom" = {',
+            '"lower.top" = { z = 0.01 }, "upper.bottom" = { z = -0.01 }, "lower.bottom" = {',
+            "step 'lift'.displacement: parts 'upper.bottom' from 'lower.top', to which tie[0] "
+            "glues it, by 0.02 along z; prescribe one side, or the same of both",
+        ),
     ],
 )
 def test_mistakes(refused: Callable[..., str], old: str, new: str, line: str):
     """Requirement: one line that says where, and what to do."""
     assert line in refused(CASE, old, new)
+
+
+@pytest.mark.parametrize("both", ["z = -0.01", "x = 0.1, y = 0.1, z = 0.1"])
+def test_both_sides_may_be_prescribed_alike(tmp_path: Path, both: str):
+    """Requirement: supports of both sides that keep them together are none that part them."""
+    given = f'"lower.top" = {{ {both} }}, "upper.bottom" = {{ {both} }}, "lower.bottom" = {{'
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.replace('"lower.bottom" = {', given))
+    assert main(["check", str(path)]) == 0
 
 
 def test_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -125,6 +125,7 @@ def check_steps(parts: ProblemParts, steps: Sequence[Step]) -> list[str]:
         if (ties := parts.assembly.constraints.ties) is not None:
             ties.check(held, _on_bodies(parts))
             ends = supports.unknowns, supports.end
+            ties.check_prescribed(*ends, step.name)
             ties.sectors.check_prescribed(*ends, inclined.of_planes(), step.name)
         check_lost_loads(parts.layout, step, loads.given(step), held)
         known[:] = False

@@ -17,19 +17,23 @@ from anisocontact.base.typed import typed
 from anisocontact.contact import facet_size
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import check_sides
-from anisocontact.contact.tie_elimination import eliminated
+from anisocontact.contact.tie_elimination import NO_SHARE, eliminated
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.midside_nodes import shares_of_corners
 from anisocontact.solver.terms.sectors import ALONG, Sectors
+from anisocontact.solver.terms.step import AXES
 
 if TYPE_CHECKING:
     from anisocontact.contact.tie_weights import TieConditions
 
 #: Gap up to which nodes are tied, over the size of the facets of the master, if none is given.
 TOLERANCE = 0.1
+#: How far supports may part the sides of a tie, over the largest value that is prescribed there:
+#: turns of curved faces whose meshes do not match do so a little.
+APART = 0.05
 
 
 @typed
@@ -130,6 +134,27 @@ class TiedFaces:
         """The check of `begin` alone, and that no cut face follows a rigid body; collective."""
         self.sectors.check_dependents(dependents)
         eliminated(self._conditions, self._flags(held, dependents), self._of_corners)
+
+    def check_prescribed(self, unknowns: Ints, values: Floats, step: str) -> None:
+        """Refuse supports of both sides of a tie that part them; collective.
+
+        Args:
+            unknowns: Prescribed unknowns that this rank owns, local numbers.
+            values: Their values, length.
+            step: Name of the step, for messages.
+        """
+        own = np.full((self._model.space.dofmap.index_map.size_local, 3), np.nan)
+        own.reshape(-1)[unknowns] = values
+        prescribed = self._groups.everywhere(own, np.nan)
+        largest = float(np.abs(np.nan_to_num(prescribed)).max(initial=0.0))
+        for i, tie in enumerate(self._ties):
+            axis, off = _parted(self._conditions[f"tie[{i}]"], prescribed)
+            if off > APART * largest:
+                text = (
+                    f"parts {tie.slave!r} from {tie.master!r}, to which tie[{i}] glues it, by "
+                    f"{off:.3g} along {AXES[axis]}; prescribe one side, or the same of both"
+                )
+                raise InputError(text, f"step {step!r}.displacement")
 
     def left_out(self) -> list[str]:
         """A line for each tie with nodes that are not tied."""
@@ -241,6 +266,21 @@ class TiedFaces:
         kept = owned[row % count]
         to, of = (3 * nodes[at[kept] % count] + at[kept] // count for at in (row, column))
         return Constraint(self._like, to, of, entries.data[kept])
+
+
+def _parted(tie: TieConditions, prescribed: Floats) -> tuple[int, float]:
+    """Where supports hold both sides: the axis along which they part them most, and how far.
+
+    Args:
+        tie: Conditions of the tie.
+        prescribed: Displacements, NaN where none is prescribed, (n, 3), length.
+    """
+    apart = (tie.own - tie.other).tocsr()
+    free = abs(apart) @ np.isnan(prescribed).astype(float)
+    known = (free <= NO_SHARE * tie.weight.max(initial=0.0)) & tie.covered[:, None]
+    weight = np.where(tie.weight > 0.0, tie.weight, np.inf)[:, None]
+    off = np.where(known, np.abs(apart @ np.nan_to_num(prescribed)) / weight, 0.0).max(axis=0)
+    return int(off.argmax()), float(off.max())
 
 
 def _by_nodes(found: Sparse) -> Sparse:
