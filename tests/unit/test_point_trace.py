@@ -117,7 +117,19 @@ def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
         ("compare", [{"sliding_rule": "none"}], "compare[0].sliding_rule: 'none' given"),
         ("compare", [{"sliding_rule": "slip-ellipse"}], "compare[0].slip_axes: missing"),
         ("compare", [{"friction": 1}], "compare[0].friction: unknown key"),
-        ("compare", [{"label": 1}], "compare[0].label: 1 given"),
+        ("compare", [{"label": 1, "coefficients": 0.1}], "compare[0].label: 1 given"),
+        ("compare", [{}], "compare[0]: nothing of the friction given, one key or more"),
+        ("compare", [{"label": "same"}], "compare[0]: nothing of the friction given"),
+        (
+            "compare",
+            [{"label": "low", "coefficients": mu} for mu in (0.1, 0.2)],
+            "compare[1].label: 'low' given, compare[0] has that label",
+        ),
+        (
+            "compare",
+            [{"sliding_rule": "radial"}, {"sliding_rule": "radial", "label": "radial"}],
+            "compare[1].label: 'radial' given, compare[0] has that label",
+        ),
         ("solver", {}, "solver: unknown key"),
     ],
 )

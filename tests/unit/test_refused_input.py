@@ -158,6 +158,16 @@ def test_which_state_of_results(tmp_path: Path, index: Any):
         Results(tmp_path).grid(index)
 
 
+def test_a_file_of_results_that_is_gone(tmp_path: Path, capfd: pytest.CaptureFixture[str]):
+    """One line, to which VTK adds nothing."""
+    (tmp_path / "summary.json").write_text("{}")
+    entry = '<DataSet timestep="0" file="fields/0000.vtu"/>'
+    (tmp_path / "fields.pvd").write_text(f"<VTKFile><Collection>{entry}</Collection></VTKFile>")
+    with pytest.raises(InputError, match=r"0000.vtu' cannot be read: \[Errno 2\] No such file$"):
+        Results(tmp_path).fields()
+    assert capfd.readouterr() == ("", "")
+
+
 def test_facets_by_a_value_without_tags():
     """The number of a tag says nothing without the tags."""
     space = build_mesh([_block()]).space

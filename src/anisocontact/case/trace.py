@@ -197,11 +197,17 @@ def _compared(case: TraceCase, data: Mapping[str, Any]) -> Iterator[tuple[str, I
     """
     friction = dict(data["contact"]["friction"])
     own = {p.name for entry in case.contact.friction.entries for p in entry.parameters}
+    labels: dict[str, str] = {}
     for i, change in enumerate(case.compare):
         table = {k: v for k, v in change.items() if k != "label"}
+        if not table:
+            text = "nothing of the friction given, one key or more that is another needed"
+            raise InputError(text, f"compare[{i}]")
         label = change.get("label", ", ".join(str(v) for v in table.values()))
         if not isinstance(label, str):
             raise InputError(f"{label!r} given, a text in quotes needed", f"compare[{i}].label")
+        if (first := labels.setdefault(label, f"compare[{i}]")) != f"compare[{i}]":
+            raise InputError(f"{label!r} given, {first} has that label", f"compare[{i}].label")
         kept = friction | table
         if "sliding_rule" in table or "model" in table:
             allowed = _parameters(kept)

@@ -8,6 +8,7 @@ import os
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import ENOENT
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -251,6 +252,8 @@ class Results:
 
         path = self._file(name, index)
         with _whole(path):
+            if not path.is_file():  # of which VTK would print pages
+                raise FileNotFoundError(ENOENT, "No such file")
             data = _pieces(path) if path.suffix == ".pvtp" else pyvista.read(path)
             if not data.n_points:  # VTK says nothing of a file that is cut off
                 raise ValueError("no points")
