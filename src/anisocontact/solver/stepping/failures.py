@@ -11,6 +11,7 @@ from anisocontact.contact.friction_hints import wrong_derivatives
 from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.convergence_diagnostics import NAMED
 from anisocontact.solver.stepping.level_nodes import level_nodes
+from anisocontact.solver.stepping.loosened import loosened
 from anisocontact.solver.stepping.overload import (
     MANY,
     Overload,
@@ -51,8 +52,8 @@ class Failures:
             return "; ".join(one.text for one in self._overloads(step, place))
         return "; ".join(self._problem.stabilisation.notes) if place.before is None else ""
 
-    def hopeless(self, step: Step, place: RunPosition, cuts: int) -> bool:
-        """Whether no cut-back helps: nothing could hold a body where it touches.
+    def hopeless(self, step: Step, place: RunPosition, cuts: int, flown: bool) -> bool:
+        """Whether no cut-back helps: nothing could hold a body where it touches, or no longer.
 
         Bodies at rest that the first small loads carry through what they rest on fall under smaller
         ones as well, as loads that grow together point where they do from the first.
@@ -61,7 +62,10 @@ class Failures:
             step: The step.
             place: Where in it the sub-increment failed.
             cuts: How often the increment has been cut before.
+            flown: Whether a body flew off in the sub-increment.
         """
+        if cuts and flown and self._loosened(step, place):
+            return True
         if cuts < MANY:
             return False
         at_rest = place.step == 0 and place.reached(step) == 0.0
@@ -81,6 +85,8 @@ class Failures:
         """
         outcome = place.lost or outcome
         culprits, found = outcome.culprits, self._overloads(step, place)
+        if not found and outcome.result.far > 0.0:
+            found = self._loosened(step, place)
         reason = reason_of(outcome.result.reason, outcome.conclusive, found)
         if outcome.result.reason not in reason:
             culprits = ()
@@ -103,3 +109,8 @@ class Failures:
         found = found or far_beyond(self._problem, end, now)
         found = found or unbalanced(self._problem, end, now)
         return found or pulled_out(self._problem, end, now)
+
+    def _loosened(self, step: Step, place: RunPosition) -> list[Overload]:
+        """As of `loosened`, at the end of the increment."""
+        end = place.control.increment / step.increments
+        return loosened(self._problem, end, place.reached(step))

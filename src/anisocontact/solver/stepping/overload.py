@@ -210,7 +210,7 @@ def _overload(problem: Problem, body: Driven, over: float, soon: bool) -> Overlo
     least = "" if certain else ", with what presses on it now"
     slips = slipping(body) if touched else ""
     cure = CURE if rubs else WITHOUT
-    text = f"{_line(body, then, found, when)}{least}: {cure}{slips}"
+    text = f"{held_at_most(body, then, found, when)}{least}: {cure}{slips}"
     told, grown = near or certain, float(then.force.sum() / points.force.sum())
     contacts = [contact for contact, _ in body.contacts]
     slide = SlidingMotion(found.motion, body.centre, body.size, body.loads, contacts, grown)
@@ -250,8 +250,15 @@ def _pressed_on(body: Driven, points: PressedPoints) -> PressedPoints:
     return replace(points, force=points.force * grown)
 
 
-def _line(body: Driven, points: PressedPoints, found: Limit, when: str) -> str:
-    """What the loads come to, and what friction holds, along the motion that it holds least."""
+def held_at_most(body: Driven, points: PressedPoints, found: Limit, when: str = "") -> str:
+    """What the loads come to, and what friction holds, along the motion that it holds least.
+
+    Args:
+        body: The body.
+        points: Where it is pressed on.
+        found: The motion.
+        when: When the loads are these; with a blank before it, empty for now.
+    """
     shift, turn = np.split(found.motion, 2)
     pressed, share = float(points.force.sum()), ""
     if np.linalg.norm(turn) <= TURNS * np.linalg.norm(shift):

@@ -355,7 +355,8 @@ class Solver(Uncopied, changing="place doubtful"):
         tried, cuts = control.part, control.cuts
         if result.culprits:
             self.place.lost = outcome
-        final = outcome.final or self._failures.hopeless(step, self.place, cuts)
+        lost = self._failures.hopeless(step, self.place, cuts, flown=result.far > 0.0)
+        final = outcome.final or lost
         if final or not control.cut():
             last = f"{cuts} cuts, the last sub-increment was {tried:.2g}" if cuts else ""
             raise self._failures.stopped(step, self.place, outcome, last)
