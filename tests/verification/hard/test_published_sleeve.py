@@ -1,7 +1,7 @@
 """A strip that slides without friction in a sleeve is pushed out of it as it is bent.
 
 Source: D. Bigoni, F. Dal Corso, F. Bosi, D. Misseroni, Eshelby-like forces acting on elastic
-structures: theoretical and experimental proof, Mech. Mater. 80 (2015) 368, from memory: where the
+structures: theoretical and experimental proof, Mech. Mater. (2015), from memory: where the
 strip leaves the sleeve with the moment M it is pushed out by M^2 / 2 E' I, although no friction
 acts and the sleeve is straight. Under a dead load P across the sleeve at its end, which turns by
 theta, the elastica has M^2 / 2 E' I = P sin(theta), and
