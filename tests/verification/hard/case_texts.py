@@ -57,7 +57,7 @@ master = "floor"
 """
 
 
-def pad_on_block(
+def pad_touches_block(
     sides: tuple[str, str],
     young: float,
     nu: float,
@@ -65,10 +65,9 @@ def pad_on_block(
     *,
     held: str,
     touch: float,
-    load: float,
     model: str = "linear-elastic",
 ) -> str:
-    """A pad of "bodies.msh" under a head, pressed on a block of its material in two increments.
+    """A pad of "bodies.msh" under a head that meets a block of its material in an increment.
 
     Args:
         sides: Slave and master.
@@ -77,7 +76,6 @@ def pad_on_block(
         friction: Coefficient.
         held: What holds the block, a table.
         touch: Way of the head to the first touch.
-        load: That presses it then.
         model: The material.
     """
     bodies = "".join(
@@ -102,6 +100,34 @@ name = "touch"
 increments = 1
 displacement = {held}
 motion = {{ head = {{ y = -{touch} }} }}
+"""
+
+
+def pad_on_block(
+    sides: tuple[str, str],
+    young: float,
+    nu: float,
+    friction: float,
+    *,
+    held: str,
+    touch: float,
+    load: float,
+    model: str = "linear-elastic",
+) -> str:
+    """The same pad, which a load presses on the block in a further increment.
+
+    Args:
+        sides: Slave and master.
+        young: Young's modulus.
+        nu: Poisson's ratio.
+        friction: Coefficient.
+        held: What holds the block, a table.
+        touch: Way of the head to the first touch.
+        load: That presses it then.
+        model: The material.
+    """
+    before = pad_touches_block(sides, young, nu, friction, held=held, touch=touch, model=model)
+    return f"""{before}
 [[step]]
 name = "press"
 increments = 1

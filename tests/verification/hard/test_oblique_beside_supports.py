@@ -22,27 +22,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import on_a_floor
 
 ANGLE, MU, LOAD = 35.0, (0.6, 0.1), 10.0
 HELD = '"block.front" = { y = 0 }'
-CASE = f"""
-title = "Block beside a wall"
-[mesh.box.block]
-origin = [0, 0, 0]
-size = [2, 0.5, 0.5]
-cells = [8, 2, 2]
-order = ORDER
-[material.block]
-model = "linear-elastic"
-E = 1000
-nu = 0.3
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 0, 1]
-[[contact]]
-slave = "block.bottom"
-master = "floor"
+LAWS = f"""
 [contact.friction]
 coefficients = {list(MU)}
 directions = {{ kind = "constant", vector = [1, 0, 0], angle_deg = {ANGLE} }}
@@ -64,7 +48,7 @@ pressure = {{ "block.top" = {} }}
 @pytest.mark.parametrize("order", [1, 2])
 def test_slides_along_the_support(to_the_end: Callable[..., Any], order: int) -> None:
     """Both components of friction are those of the ellipse, whichever way the block goes."""
-    text = CASE.replace("ORDER", str(order))
+    text = on_a_floor("block", [2, 0.5, 0.5], [8, 2, 2], 1000, nu=0.3, order=order) + LAWS
     for name, way in (("drag", 0.25), ("back", -0.25)):
         text += WAY.format(name, HELD, way, LOAD)
     run = to_the_end(text)

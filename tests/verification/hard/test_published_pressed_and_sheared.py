@@ -27,41 +27,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import pad_touches_block
 from tests.verification.hard.drawn import drawn, fine_at
 from tests.verification.hard.test_published_fretting import MU, RADIUS, REDUCED, E
 from tests.verification.hard.test_published_fretting import mesh as cylinder
 
 SLOPE = 0.01
 
-CASE = """
-title = "Pressed and sheared"
-[idealisation]
-kind = "plane-strain"
-[mesh]
-file = "bodies.msh"
-[material.pad]
-model = "linear-elastic"
-E = {young}
-nu = 0.3
-[material.block]
-model = "linear-elastic"
-E = {young}
-nu = 0.3
-[[contact]]
-slave = "{sides[0]}"
-master = "{sides[1]}"
-friction = {{ coefficients = {mu} }}
-[rigid.head]
-faces = ["pad.top"]
-reference = [0, 12, 0]
-[[step]]
-name = "touch"
-increments = 1
-displacement = {{ "block.bottom" = {{ x = 0, y = 0 }} }}
-motion = {{ head = {{ y = -0.002 }} }}
-"""
+HELD = '{ "block.bottom" = { x = 0, y = 0 } }'
 FREE = 'motion = { head = { x = "free", y = "free" } }'
 SIDES = [("pad.nose", "block.top"), ("block.top", "pad.nose")]
+
+
+def touching(sides: tuple[str, str]) -> str:
+    """The bodies, and the increment in which they meet."""
+    return pad_touches_block(sides, E, 0.3, MU, held=HELD, touch=0.002)
 
 
 def step(name: str, load: str, free: str = "") -> str:
@@ -113,7 +93,7 @@ def test_pressed_and_sheared_at_once(
     cylinder(tmp_path / "bodies.msh")
     force, share = 4.31, 0.7
     loads = step("both", f"y = -{force}, x = {share * MU * force}", FREE)
-    run = to_the_end(CASE.format(sides=sides, mu=MU, young=E) + loads, most=8000)
+    run = to_the_end(touching(sides) + loads, most=8000)
     x, _, found = shear_of(run, sides[0] == "pad.nose")
 
     def hertz(load: float) -> Any:
@@ -137,7 +117,7 @@ def test_wedge(tmp_path: Path, to_the_end: Callable[..., Any], sides: tuple[str,
     wedge(tmp_path / "bodies.msh")
     force = REDUCED * SLOPE
     loads = step("press", f"y = -{force}", FREE) + step("shear", f"x = {0.5 * MU * force}")
-    run = to_the_end(CASE.format(sides=sides, mu=MU, young=E) + loads, most=8000)
+    run = to_the_end(touching(sides) + loads, most=8000)
     x, pressure, found = shear_of(run, sides[0] == "pad.nose")
     away = np.maximum(np.abs(x), 1e-9)
     whole, stuck = (np.arccosh(np.maximum(half / away, 1.0)) for half in (1.0, 0.5))

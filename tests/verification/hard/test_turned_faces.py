@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.hard.case_texts import on_a_floor
 
 from anisocontact.base.errors import RunWarning
 
@@ -133,22 +134,6 @@ def test_nothing_to_be_told(model: str, friction: float, to_the_end: Callable[..
 
 
 DRAGGED = """
-title = "Block dragged"
-[mesh.box.block]
-origin = [0, 0, 0]
-size = [1, 1, 0.5]
-cells = [3, 3, 2]
-[material.block]
-model = "linear-elastic"
-E = 1000
-nu = 0.3
-[surface.floor]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 0, 1]
-[[contact]]
-slave = "block.bottom"
-master = "floor"
 [contact.friction]
 coefficients = [0.3, 0.1]
 directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 }
@@ -165,7 +150,7 @@ displacement = { "block.top" = { x = 5, y = 1 } }
 
 def test_block_dragged_far(to_the_end: Callable[..., Any]) -> None:
     """What is moved and not turned has no such arm."""
-    run = to_the_end(DRAGGED)
+    run = to_the_end(on_a_floor("block", [1, 1, 0.5], [3, 3, 2], 1000, nu=0.3) + DRAGGED)
     assert not any(part.faces for part in run.accepted)
 
 
