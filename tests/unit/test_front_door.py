@@ -229,6 +229,35 @@ def test_goes_on_from_a_file(pad, tmp_path):
         other.restore(tmp_path / "none.npz")
 
 
+@pytest.mark.parametrize("returned", [False, True])
+@pytest.mark.parametrize("last", [2, 4])
+def test_a_callback_that_restores_ends_the_step(pad, tmp_path, returned, last):
+    """Requirement: a step does not go on from a state that is not its own.
+
+    It went on behind its increments, with the history of an earlier one: the way between was done
+    in one increment, without a word.
+    """
+    problem, moved, contact = pad()
+    slips, path = [], tmp_path / "state.npz"
+
+    def callback(share, _):
+        slips.append(contact.state["slip_accumulated"].copy())
+        if len(slips) == 1:
+            problem.save(path)
+        if len(slips) == last:
+            problem.restore(path)
+            return returned
+        return False
+
+    if returned or last == 4:
+        problem.solve_steps(drag(moved), 4, callback=callback)
+    else:
+        with pytest.raises(InputError, match="callback: it restored a state, from which the step"):
+            problem.solve_steps(drag(moved), 4, callback=callback)
+    assert len(slips) == last
+    assert np.array_equal(contact.state["slip_accumulated"], slips[0])
+
+
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04junk", b"\x93NUMPY"])
 def test_a_file_that_is_none_is_one_line(pad, tmp_path, content):
     """Requirement: a state that was cut off, or is none, and a folder that is not there."""

@@ -99,6 +99,7 @@ class ContactProblem(Uncopied):
     ) -> None:
         unknowns = script_unknowns(contacts, u.function_space)
         self._bodies, self._key = moved_bodies(contacts), object()
+        self._restored = False
         self.u, self.bcs, self.contacts = u, list(bcs), tuple(contacts)
         form = FormBulk(F, u, J)
         bodies = Bodies(form, unknowns)
@@ -240,7 +241,8 @@ class ContactProblem(Uncopied):
         Raises:
             RuntimeError: The smallest sub-increment failed; `u`, the history and what is
                 prescribed are as after the last accepted one.
-            InputError: No increments, or as of `solve`.
+            InputError: No increments, a callback that restores a state and does not end the step,
+                which cannot go on from there, or as of `solve`.
 
         Example:
             See `examples/dolfinx_script/rubber_pad.py`.
@@ -262,8 +264,14 @@ class ContactProblem(Uncopied):
                 raise
             control.advance(iterations)
             total += iterations
+            self._restored = False
             if callback is not None and callback(share, iterations):
                 break
+            if self._restored and control.increment <= increments:
+                text = (
+                    "it restored a state, from which the step cannot go on: return True to end it"
+                )
+                raise InputError(text, "callback")
         return total
 
     @typed
@@ -296,6 +304,7 @@ class ContactProblem(Uncopied):
             self._state.take(kept)
         except InputError as error:
             raise InputError(f"'{file}': {error}", "path") from None
+        self._restored = True
         for body in self._bodies:
             body.history_of = self._key
 
