@@ -57,7 +57,10 @@ def _interface(shape: str = "plane") -> Interface:
         (lambda: PrescribedPath([(0, 0, 0)], pressure=1.0), "times: missing"),
         (lambda: PrescribedPath(lambda t: (t, 0, 0), pressure=1.0), "times: missing"),
         (lambda: PrescribedPath(PATH, pressure=1.0, times=[0, 0]), "times: [0.0, 0.0] given"),
-        (lambda: PrescribedPath(PATH, pressure=1.0, times=[0]), "times: a list of at least two"),
+        (
+            lambda: PrescribedPath(PATH, pressure=1.0, times=[0]),
+            "times: [0.0] given, two or more finite",
+        ),
         (lambda: PrescribedPath(PATH, pressure=1.0, increments=0), "increments: 0 given"),
         (lambda: PrescribedPath(PATH, pressure=1.0, increments=1.5), "increments: 1.5 given"),
         (lambda: PrescribedPath(PATH, pressure=1.0, increments=[1, 2]), "increments: 2 given"),

@@ -13,6 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact import (
     Body,
+    PrescribedPath,
     Results,
     Until,
     WholeMesh,
@@ -189,6 +190,16 @@ def test_columns_that_do_not_rise():
     ):
         with pytest.raises(InputError, match=f"^flow_curve: {says}"):
             make_material("plastic", flow_curve=curve, **metal)
+
+
+@pytest.mark.parametrize(
+    ("times", "shown"), [([0, np.nan], "[0.0, nan]"), ([1], "[1.0]"), (2, "2.0")]
+)
+def test_times_of_a_path(times: Any, shown: str):
+    """What was given is told, of which the number may be right."""
+    with pytest.raises(InputError) as told:
+        PrescribedPath([[0, 0, 0], [1, 0, 0]], times=times)
+    assert str(told.value) == f"times: {shown} given, two or more finite times needed"
 
 
 def test_an_event_and_a_value():

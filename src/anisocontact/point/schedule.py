@@ -125,7 +125,8 @@ def knot_times(given: npt.ArrayLike | None, value: Any) -> Floats:
         return np.arange(float(n))
     times = np.asarray(given, dtype=np.float64)
     if times.ndim != 1 or len(times) < 2 or not np.isfinite(times).all():
-        raise InputError("a list of at least two times is needed", field="times")
+        shown = times.tolist()
+        raise InputError(f"{shown} given, two or more finite times needed", field="times")
     if not (np.diff(times) > 0.0).all():
         raise InputError(f"{times.tolist()} given, increasing times needed", field="times")
     check_size("times", times)
