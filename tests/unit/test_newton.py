@@ -16,6 +16,7 @@ from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.newton import Newton
 from anisocontact.solver.strategies.newton_iteration import NewtonIteration
 from anisocontact.solver.strategies.residual_history import PATIENCE, STUCK_OVER
+from anisocontact.solver.strategies.settled_contact import SettledContact
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 
@@ -276,9 +277,10 @@ def test_share_of_the_elastic_tangent(residuals, compact, share):
     system.contact_term = Contacts([])
     system.contact_term.compact = compact
     system.take_elastic_share = given.append  # type: ignore[method-assign]
-    iteration = NewtonIteration(system, lambda number, residual: None)
-    iteration.residuals.extend(residuals)
     snes = PETSc.SNES().create(PETSc.COMM_SELF)
+    settled = SettledContact(system, snes)
+    iteration = NewtonIteration(system, lambda number, residual: None, settled)
+    iteration.residuals.extend(residuals)
     iteration.tangent(snes, system.new_vector(), system.new_tangent())
     snes.destroy()
     assert given == pytest.approx([share, 0.0])

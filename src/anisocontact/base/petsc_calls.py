@@ -42,6 +42,16 @@ def check_memory(pc: Any) -> None:
         raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
 
 
+def forget_failure(ksp: Any) -> None:
+    """Let a solver that has failed solve again: PETSc would say of all later ones that they fail.
+
+    Args:
+        ksp: It.
+    """
+    ksp.reset()
+    ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
+
+
 def not_finite(pc: Any) -> bool:
     """Whether the matrix of a factorisation has values that are not finite; collective."""
     return _is_direct(pc) and not np.isfinite(pc.getOperators()[1].norm())

@@ -1,11 +1,12 @@
 """Rigid ball pressed into metal until it flows all around, and let go.
 
 Requirement: mean pressure over the yield stress within 4 %: 2.84 - 0.92 (1 - cos(pi a/R)) with the
-radius a of the contact; at most 20 corrections an increment in the mean, without a cut.
+radius a of the contact; at most 15 corrections an increment in the mean, without a cut.
 Source: fit to finite elements [Jackson Green 2005], quoted from memory; 2.84 is Tabor's hardness of
 three yield stresses. Reason: the edge of the contact is known to half a facet, 4 % of a, of which
-the mortar weights leave 2 % of the area. Corrections: 96 in all and 32 with letting go; 432 and 82
-before tangents of what flows had a share of the elastic one.
+the mortar weights leave 2 % of the area. Corrections: 70 in all and 25 with letting go; 96 and 32
+before contact was settled in each, 432 and 82 before tangents of what flows had a share of the
+elastic one.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import pytest
 
 YIELD, DEPTH, PRESSES = 400.0, 0.03, 6
 #: Corrections of an increment, in the mean.
-MEAN = 20
+MEAN = 15
 
 CASE = f"""
 [idealisation]

@@ -17,8 +17,7 @@ Requirement: a = 6 degrees, R / R0 = 0.9, friction 0.05 and none: the stress of 
 between both, as slices know nothing of what turns the metal in and out of the cone; no cut. All
 increments, each of seven tenths of a facet, take no more corrections than are given. Tolerance:
 measured 0.336 to 0.357 between 0.296 and 0.401, and 0.216 to 0.258 between 0.211 and 0.291.
-Corrections: 200 in eight increments, and 151 in six; 299 and 182 where points are closed singly
-before other penalties are tried, which leads nowhere while all the metal in the die flows.
+Corrections: 62 in eight increments, and 51 in six; 123 and 55 before contact was settled in each.
 """
 
 from __future__ import annotations
@@ -108,7 +107,7 @@ def bounds(friction: float) -> tuple[float, float]:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "size", "increments", "way", "most"),
-    [(0.05, 0.125, 8, 0.66, 250), (0.0, 0.2, 6, 0.8, 168)],
+    [(0.05, 0.125, 8, 0.66, 90), (0.0, 0.2, 6, 0.8, 75)],
 )
 def test_wire_drawing(
     friction: float,

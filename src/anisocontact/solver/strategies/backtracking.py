@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.strategies.system import System
 from anisocontact.solver.terms.contacts import Contacts, Marks
@@ -18,6 +19,27 @@ MEMORY = 3
 LEAST = 1.0 / 32.0
 #: Share from which on a shorter correction is worth it while points keep their status.
 HALF = 0.5
+
+
+@dataclass(frozen=True)
+class Begun:
+    """What a search asks of the state that a correction begins at.
+
+    Attributes:
+        norm: Size of its residual.
+        touches: Whether anything touches there.
+        statuses: Status of the slave points of this rank.
+    """
+
+    norm: float
+    touches: bool
+    statuses: Locals
+
+    @classmethod
+    def of(cls, system: System) -> Begun:
+        """Of the state of the last evaluation; collective."""
+        contacts = system.contact_term
+        return cls(system.balance.norm, contacts.touch(), contacts.statuses())
 
 
 class Backtracking:
@@ -57,26 +79,37 @@ class Backtracking:
         self._known.clear()
         self._tried, self._left = None, False
 
-    def share(self, x: Vec, correction: Vec, largest: float) -> float:
+    def share(
+        self,
+        x: Vec,
+        correction: Vec,
+        largest: float,
+        begun: Begun | None = None,
+        ends: Marks | None = None,
+    ) -> float:
         """Share of a correction to take; the multipliers have taken it then.
 
         Args:
-            x: Where the system was evaluated last.
+            x: Where the correction begins.
             correction: What is to be subtracted from it.
             largest: Largest share that may be taken.
+            begun: What is asked of `x`; that of the last evaluation if left out.
+            ends: Where multipliers are at the end of a correction, if that is not where they come
+                to by one: with less than the largest share they go there from `x`.
         """
         contacts, share = self._contacts, largest
         contacts.damp_correction(share)
         if not contacts.retraceable:
             return share
-        free = self.whole or not contacts.touch()
-        self._known.append(self._system.balance.norm)
+        begun = Begun.of(self._system) if begun is None else begun
+        free = self.whole or not begun.touches
+        self._known.append(begun.norm)
         bound = np.inf if free else max(self._known)
-        marks, before = contacts.marks(), contacts.statuses()
+        marks, before = contacts.marks(), begun.statuses
         answers, settled, touches = True, False, 0.0
         while share >= LEAST * largest:
             # a number that is none compares as false
-            if self._norm_at(share, x, correction) <= bound:
+            if self._norm_at(share, x, correction, ends if share == largest else None) <= bound:
                 self._left = self._left and share < largest
                 return share
             answered = bool(np.isfinite(self._system.balance.norm))
@@ -93,14 +126,17 @@ class Backtracking:
             if settled and share < HALF * largest:
                 break
         share = (touches or largest) if answers else share
-        self._norm_at(share, x, correction)
+        self._norm_at(share, x, correction, ends if share == largest else None)
         return share
 
-    def _norm_at(self, share: float, x: Vec, correction: Vec) -> float:
+    def _norm_at(self, share: float, x: Vec, correction: Vec, ends: Marks | None) -> float:
         """Size of the residual where a share is taken, which the multipliers take as well."""
         contacts, there = self._contacts, x.duplicate()
         marks, part = contacts.marks(), correction.copy()
         contacts.damp_correction(share)
+        if ends is not None:
+            contacts.go_back(ends)
+            contacts.damp_correction(0.0)
         part.scale(share)
         there.waxpy(-1.0, part, x)
         self._tried = marks, np.array(there.array_r), self._system.evaluate(there)

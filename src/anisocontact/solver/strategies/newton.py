@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -10,10 +11,11 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc, Vec
-from anisocontact.base.petsc_calls import check_memory, not_finite
+from anisocontact.base.petsc_calls import check_memory, forget_failure, not_finite
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.newton_iteration import NewtonIteration
+from anisocontact.solver.strategies.settled_contact import SettledContact
 from anisocontact.solver.strategies.stability import unstable
 from anisocontact.solver.strategies.system import System
 from anisocontact.solver.system.culprit import Culprit, LostError
@@ -111,8 +113,10 @@ class Newton:
         on_iteration: Callable[[int, float], None],
     ) -> None:
         self._problem = problem
-        self._iteration = NewtonIteration(problem, on_iteration)
         self.snes = PETSc.SNES().create(problem.comm)
+        # what SNES calls must not keep it alive
+        settled = SettledContact(problem, weakref.proxy(self.snes))
+        self._iteration = NewtonIteration(problem, on_iteration, settled)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._iteration.function, problem.new_vector())
         self.snes.setJacobian(self._iteration.jacobian, problem.new_tangent())
@@ -231,13 +235,11 @@ class Newton:
         reason = self.snes.getConvergedReason()
         text = "" if reason > 0 else self._explain(reason)
         if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
-            # PETSc would say of every later one that it failed, too
             ksp = self.snes.getKSP()
             check_memory(ksp.getPC())
             if not_finite(ksp.getPC()):
                 text = "the tangent matrix has values that are not finite"
-            ksp.reset()
-            ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
+            forget_failure(ksp)
         balance = self._problem.balance
         lost = bool(text) and balance.in_rounding(self.snes.getFunctionNorm())
         known = self._iteration.residuals

@@ -7,11 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
-from anisocontact.solver.strategies.backtracking import Backtracking
+from anisocontact.solver.strategies.backtracking import Backtracking, Begun
 from anisocontact.solver.strategies.mixed_search import MixedSearch
 from anisocontact.solver.strategies.residual_history import PATIENCE, ResidualHistory
+from anisocontact.solver.strategies.settled_contact import SettledContact
 from anisocontact.solver.strategies.symmetric import check_symmetric
 from anisocontact.solver.strategies.system import System
+from anisocontact.solver.terms.contacts import Marks
 
 #: Share of the elastic tangent where bodies flow, over the residual over the forces at work; the
 #: most, and the least that is taken: near equilibrium tangents are exact, and convergence is
@@ -28,6 +30,7 @@ class NewtonIteration:
     Args:
         system: The system of equations.
         on_iteration: Called with the number of the iteration and the residual.
+        settled: Settles contact within a correction, where that pays.
 
     Attributes:
         search: The line search where multipliers follow.
@@ -36,8 +39,13 @@ class NewtonIteration:
         patience: Corrections after which only a residual that falls is waited for.
     """
 
-    def __init__(self, system: System, on_iteration: Callable[[int, float], None]) -> None:
-        self._system, self._on_iteration = system, on_iteration
+    def __init__(
+        self,
+        system: System,
+        on_iteration: Callable[[int, float], None],
+        settled: SettledContact,
+    ) -> None:
+        self._system, self._on_iteration, self._settled = system, on_iteration, settled
         self._damping: Callable[[], float] | None = None
         self.search, self.mixed, self.mixes = Backtracking(system), MixedSearch(system), False
         self.patience: float = PATIENCE
@@ -104,15 +112,26 @@ class NewtonIteration:
 
     def damp(self, x: Vec, direction: Vec) -> bool:
         """Shorten a correction, for PETSc; whether it was."""
-        share = 1.0 if self._damping is None else self._damping()
-        follows = self._system.contact_term.simultaneous
-        if follows or self.mixes:
-            search = self.search if follows else self.mixed
-            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                share = search.share(x, direction, share)
+        share, changed = 1.0 if self._damping is None else self._damping(), False
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            if self._system.contact_term.simultaneous:
+                begun, ends = Begun.of(self._system), self._settle(x, direction)
+                share, changed = self.search.share(x, direction, share, begun, ends), bool(ends)
+            elif self.mixes:
+                share = self.mixed.share(x, direction, share)
         if share != 1.0:
             direction.scale(share)
-        return share != 1.0
+        return share != 1.0 or changed
+
+    def _settle(self, x: Vec, direction: Vec) -> Marks | None:
+        """Where multipliers are at the end of a correction with settled contact; None of others."""
+        if self._damping is not None or not self._settled.pays:
+            return None
+        contacts = self._system.contact_term
+        marks, settles = contacts.marks(), self._settled.settle(x, direction)
+        ends = contacts.marks() if settles else None
+        contacts.go_back(marks)
+        return ends
 
     def converged(
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]

@@ -59,6 +59,10 @@ class System(Protocol):
         """Let the next tangents have a share of the elastic one where bodies flow."""
         ...
 
+    def linearised(self) -> AbstractContextManager[None]:
+        """Around evaluations and tangents in which bodies answer as their last tangent says."""
+        ...
+
     @property
     def followed(self) -> FollowedPressures | None:
         """Pressures that follow corrections, if there are any."""

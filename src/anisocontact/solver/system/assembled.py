@@ -36,6 +36,10 @@ class AssembledSystem:
     def take_elastic_share(self, elastic_share: float) -> None:
         """Let the next tangents have a share of the elastic one where bodies flow; nothing does."""
 
+    def linearised(self) -> AbstractContextManager[None]:
+        """Around evaluations in which bodies answer as their last tangent says: linear ones do."""
+        return nullcontext()
+
     def corrected(self, searching: bool) -> AbstractContextManager[bool]:
         """Around Newton's method: whether corrections are to be taken in full."""
         return nullcontext(False)

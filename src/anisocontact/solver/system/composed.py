@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from typing import Any, override
 
 import numpy as np
@@ -73,6 +74,10 @@ class ComposedSystem(ReportedSystem):
     @override
     def take_elastic_share(self, elastic_share: float) -> None:
         self.assembly.bodies.elastic_share = elastic_share
+
+    @override
+    def linearised(self) -> AbstractContextManager[None]:
+        return self.assembly.bodies.linearised()
 
     def constrained(self) -> Ints:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""

@@ -72,6 +72,7 @@ class Bodies(Term):
         self._accepted: Floats | None = None
         #: Displacement and internal force at the last tangent.
         self._written: tuple[Vec, Floats] | None = None
+        self._linear = False
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
@@ -86,9 +87,23 @@ class Bodies(Term):
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
         """
-        self._internal = -np.asarray(self.bulk.force(self._owned(u)).array_r)
+        if self._linear:
+            assert self._written is not None, "`add_tangent` comes first"
+            at, there = self._written
+            self._internal = there - self.bulk.times(self._owned(u) - at).array_r
+        else:
+            self._internal = -np.asarray(self.bulk.force(self._owned(u)).array_r)
         self._internal_at = np.array(self._u.array_r)
         return self._internal
+
+    @contextmanager
+    def linearised(self) -> Iterator[None]:
+        """Around evaluations in which forces follow from the last tangent, which is kept."""
+        self._linear = True
+        try:
+            yield
+        finally:
+            self._linear = False
 
     def accepted_internal_force(self, u: Floats) -> Floats:
         """Internal force in the accepted state `u`, as of `internal_force`; collective.
@@ -150,8 +165,9 @@ class Bodies(Term):
 
     @override
     def add_tangent(self, matrix: Mat) -> None:
-        self.bulk.tangent(matrix, again=self.again, elastic_share=self.elastic_share)
-        if not self.again:
+        again = self.again or self._linear
+        self.bulk.tangent(matrix, again=again, elastic_share=self.elastic_share)
+        if not again:
             self._written = self._u.copy(), self._internal
 
     def energy(self, u: Floats) -> float:
