@@ -123,3 +123,20 @@ def test_where_it_pays(material: str, method: Augmentation | None, pays: bool) -
     newton = Newton(problem, "pays_", {}, lambda *_: None)
     assert SettledContact(problem, newton.snes).pays is pays
     newton.close()
+
+
+def test_trials_apart_leave_no_trace(newton: tuple[Problem, Newton]) -> None:
+    """Multipliers, and which points slide to and fro, are as they were before trials apart."""
+    problem, solver = newton
+    x, correction = _correction(problem, solver)
+    (trials,) = problem.contact_term._trials
+    reversals = trials._changes.reversals
+    known, marks = reversals._last, problem.contact_term.marks()
+    assert known is not None
+    with problem.contact_term.apart():
+        assert reversals._last is None
+        x.axpy(-1.0, correction)
+        problem.evaluate(x)
+        assert problem.contact_term.marks()[0][0] is not marks[0][0]
+    assert reversals._last is known
+    assert problem.contact_term.marks()[0][0] is marks[0][0]

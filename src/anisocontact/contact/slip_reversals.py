@@ -12,7 +12,8 @@ as in a primal-dual active set [Hueeber Stadler Wohlmuth 2008].
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,16 +58,27 @@ class SlipReversals:
 
     def __init__(self, comm: Any) -> None:
         self._comm = comm
-        self.begin()
+        self._times: Any = 0
+        self._last: _Sliding | None = None
 
     def begin(self) -> None:
         """Take it that corrections start anew."""
-        self._times: Any = 0
+        self._times = 0
         self.forget()
+
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """Around trials that are no corrections: what is known of these is none of theirs."""
+        known = self._times, self._last
+        self.begin()
+        try:
+            yield
+        finally:
+            self._times, self._last = known
 
     def forget(self) -> None:
         """Take it that there was no trial before the next one."""
-        self._last: _Sliding | None = None
+        self._last = None
 
     def sticking(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Any
 
@@ -318,6 +319,10 @@ class Trials:
         """Take it that the trials since a mark have not been."""
         self.start, self._linear = mark
         self._changes.reversals.forget()
+
+    def apart(self) -> AbstractContextManager[None]:
+        """Around trials that are no corrections, see `SlipReversals`."""
+        return self._changes.reversals.apart()
 
     def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""

@@ -128,10 +128,8 @@ class NewtonIteration:
         if self._damping is not None or not self._settled.pays:
             return None
         contacts = self._system.contact_term
-        marks, settles = contacts.marks(), self._settled.settle(x, direction)
-        ends = contacts.marks() if settles else None
-        contacts.go_back(marks)
-        return ends
+        with contacts.apart():
+            return contacts.marks() if self._settled.settle(x, direction) else None
 
     def converged(
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]

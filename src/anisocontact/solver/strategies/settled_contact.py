@@ -39,14 +39,14 @@ class SettledContact:
         return contacts.plastic and contacts.simultaneous and contacts.retraceable
 
     def settle(self, x: Vec, correction: Vec) -> bool:
-        """Bring a correction to where contact is settled; the multipliers have followed it then.
+        """Bring a correction to where contact is settled, and the multipliers with it.
 
         Args:
             x: Where the system was evaluated last.
             correction: What is to be subtracted from it; overwritten where that changes anything.
 
         Returns:
-            Whether it does; else the multipliers are to go back.
+            Whether it does. Trials were none of Newton's, see `Contacts.apart`.
         """
         system, largest = self._system, self._system.balance.norm
         statuses = system.contact_term.statuses()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from typing import override
 
 import numpy as np
@@ -221,6 +222,18 @@ class Contacts(Term):
         """Go back with the multipliers to where they were with these marks."""
         for one, mark in zip(self._trials, marks, strict=True):
             one.go_back(mark)
+
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """Around trials that are no corrections: multipliers and what is known come back."""
+        marks = self.marks()
+        with ExitStack() as stack:
+            for one in self._trials:
+                stack.enter_context(one.apart())
+            try:
+                yield
+            finally:
+                self.go_back(marks)
 
     def damp_correction(self, share: float) -> None:
         """Let multipliers that follow take only a share of the next correction."""
