@@ -130,3 +130,15 @@ def test_a_script_ends_within_a_run():
     command = [sys.executable, "-c", script]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+def test_no_state_is_restored_while_an_increment_is_solved(strategy):
+    """Requirement: that is refused in one line, and the run ends; then it can be restored."""
+    solver = _solver(strategy)
+    going = solver.run(on_iteration=lambda _: solver.restore(kept))
+    kept = solver.persistent()
+    with pytest.raises(InputError, match="solver: it solves an increment: restore it, or begin"):
+        next(going)
+    solver.restore(kept)
+    assert len(list(solver.run())) == 5

@@ -15,10 +15,10 @@ from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.mesh import Body, Placement, PlaneStrain, Rotation, build_mesh, make_shape
 from anisocontact.solver import Problem, Step
-from anisocontact.solver.stepping.attempts import Outcome
 from anisocontact.solver.stepping.failures import Failures
 from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.solver.strategies.newton import NewtonResult
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.surfaces import make_surface
 
 APART = 1.1
@@ -94,18 +94,23 @@ def test_a_pile_that_may_stand_is_not_told(friction: float, above: float) -> Non
 def test_a_fall_from_rest_ends_the_run(led: bool) -> None:
     """Bodies at rest that small loads have carried through each other.
 
-    Requirement: there is no smaller part then, and there is where motion is prescribed or
-    something has been accepted before. Source: loads that grow together point where they do from
-    the first, so that smaller ones move the bodies along the same path.
+    Requirement: there is no smaller part then, and there is where motion is prescribed, something
+    has been accepted before, or the body is held by more than contact. Source: loads that grow
+    together point where they do from the first, so that smaller ones move the bodies along the same
+    path.
     """
     problem, step = _pile(24, 1.1 * HOLDS)
     if led:
         step = replace(step, displacement={"top.outer": {"y": -0.01}})
     problem.begin(step)
     failures, place = Failures(problem, []), RunPosition.beginning(0, 0.0, Limits())
-    assert not failures.hopeless(step, place, 2)
-    place.lost = Outcome(NewtonResult(iterations=1, reason="lost", residuals=[1.0, 1.0]))
-    assert failures.hopeless(step, place, 2) is not led
-    assert not failures.hopeless(step, place, 1)
+    through = Culprit("behind", (0.0, 0.0, 0.0), "body 'top' has gone through its master", "2")
+    other = replace(through, contact="of another body")
+    stuck = NewtonResult(iterations=1, residuals=[1.0, 1.0], reason="the line search got stuck")
+    lost = replace(stuck, culprits=(through,))
+    assert not failures.hopeless(step, place, 2, stuck)
+    assert failures.hopeless(step, place, 2, lost) is not led
+    assert not failures.hopeless(step, place, 1, lost)
+    assert not failures.hopeless(step, place, 2, replace(stuck, culprits=(other,)))
     place.control.done = 0.5
-    assert not failures.hopeless(step, place, 2)
+    assert not failures.hopeless(step, place, 2, lost)

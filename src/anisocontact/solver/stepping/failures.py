@@ -25,6 +25,7 @@ from anisocontact.solver.stepping.pulled_out import pulled_out
 from anisocontact.solver.stepping.report import StoppedError
 from anisocontact.solver.stepping.run_position import RunPosition
 from anisocontact.solver.stepping.unbalanced_loads import unbalanced
+from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
@@ -52,27 +53,34 @@ class Failures:
             return "; ".join(one.text for one in self._overloads(step, place))
         return "; ".join(self._problem.stabilisation.notes) if place.before is None else ""
 
-    def hopeless(self, step: Step, place: RunPosition, cuts: int, flown: bool) -> bool:
+    def hopeless(self, step: Step, place: RunPosition, cuts: int, result: NewtonResult) -> bool:
         """Whether no cut-back helps: nothing could hold a body where it touches, or no longer.
 
-        Bodies at rest that the first small loads carry through what they rest on fall under smaller
-        ones as well, as loads that grow together point where they do from the first.
+        Bodies at rest that nothing but contact holds, and that the first small loads carry through
+        what they rest on, fall under smaller ones as well, as loads that grow together point where
+        they do from the first.
 
         Args:
             step: The step.
             place: Where in it the sub-increment failed.
             cuts: How often the increment has been cut before.
-            flown: Whether a body flew off in the sub-increment.
+            result: What came of the sub-increment.
         """
-        if cuts and flown and self._loosened(step, place):
+        if cuts and result.far > 0.0 and self._loosened(step, place):
             return True
         if cuts < MANY:
             return False
         at_rest = place.step == 0 and place.reached(step) == 0.0
-        if at_rest and place.lost is not None and not moves(self._problem):
+        if at_rest and self._falls(result) and not moves(self._problem):
             return True
         end, now = place.control.increment / step.increments, place.reached(step)
         return any(one.certain for one in unbalanced(self._problem, end, now))
+
+    def _falls(self, result: NewtonResult) -> bool:
+        """Whether a body that nothing but contact holds has got where it cannot be."""
+        lost = {culprit.contact for culprit in result.culprits}
+        loose = self._problem.stabilisation.loose
+        return any(contact.name in lost for free in loose for contact in free.contacts)
 
     def stopped(self, step: Step, place: RunPosition, outcome: Outcome, tried: str) -> StoppedError:
         """Say why an increment has no solution.

@@ -112,6 +112,7 @@ class Solver(Uncopied, changing="place doubtful"):
         self._options = Database(options_prefix, self._task.options)
         self._newton: IncrementSolver | None = None
         self._begun: int | None = None
+        self._solves = False
         self._kept: Arrays = {}
         self._waiting: Arrays = {}
         self._on_iteration: Callable[[Progress], None] | None = None
@@ -244,11 +245,12 @@ class Solver(Uncopied, changing="place doubtful"):
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
         """Sub-increment by sub-increment to the end of the step, or to its event."""
-        place, control = self.place, self.place.control
+        place, control, newton = self.place, self.place.control, self._newton
         largest, events = self._begin(step)
         attempts.events = events
         while control.increment <= step.increments:
             self._check_alone()
+            self._check_last(newton)
             last = self.problem.accepted()
             if self._slides_before_end(step, events):
                 continue
@@ -309,11 +311,14 @@ class Solver(Uncopied, changing="place doubtful"):
 
     def _end_last(self) -> None:
         """End the run that goes on, if there is one; the problem is brought up to date."""
+        if self._solves:
+            text = "it solves an increment: restore it, or begin another run, between increments"
+            raise InputError(text, field="solver")
         if self._newton is not None:
             newton, self._newton, self._kept = self._newton, None, {}
             newton.close()
 
-    def _check_last(self, newton: IncrementSolver) -> None:
+    def _check_last(self, newton: IncrementSolver | None) -> None:
         """Refuse to go on with a run that a restored state or another run has ended."""
         if self._newton is not newton:
             text = "it was restored, or has begun another run, since this run: begin a new one"
@@ -346,8 +351,12 @@ class Solver(Uncopied, changing="place doubtful"):
         release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller sub-increment leads to their end
         overloads = past_holding(self.problem, end, self.place.reached(step), control.cuts)
-        with self._options:
-            return attempts.solve(first, last, ratio, control, overloads)
+        self._solves = True
+        try:
+            with self._options:
+                return attempts.solve(first, last, ratio, control, overloads)
+        finally:
+            self._solves = False
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next sub-increment smaller, or give up."""
@@ -355,8 +364,7 @@ class Solver(Uncopied, changing="place doubtful"):
         tried, cuts = control.part, control.cuts
         if result.culprits:
             self.place.lost = outcome
-        lost = self._failures.hopeless(step, self.place, cuts, flown=result.far > 0.0)
-        final = outcome.final or lost
+        final = outcome.final or self._failures.hopeless(step, self.place, cuts, result)
         if final or not control.cut():
             last = f"{cuts} cuts, the last sub-increment was {tried:.2g}" if cuts else ""
             raise self._failures.stopped(step, self.place, outcome, last)

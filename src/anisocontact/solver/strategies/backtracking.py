@@ -140,6 +140,7 @@ class Backtracking:
         part.scale(share)
         there.waxpy(-1.0, part, x)
         self._tried = marks, np.array(there.array_r), self._system.evaluate(there)
+        contacts.damp_correction(share)
         return float(self._system.balance.norm)
 
     def evaluated(self, x: Vec) -> Floats | None:

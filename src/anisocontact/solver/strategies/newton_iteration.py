@@ -25,7 +25,7 @@ ELASTIC_SHARE, MOST_ELASTIC, LEAST_ELASTIC = 0.3, 0.5, 1e-3
 class NewtonIteration:
     """Residual, tangent, share of a correction and convergence, as callbacks of SNES.
 
-    SNES refers to this object, which refers to no SNES: what a solver lets go of is gone at once.
+    SNES refers to this object, which keeps no SNES: what a solver lets go of is gone at once.
 
     Args:
         system: The system of equations.
@@ -102,8 +102,8 @@ class NewtonIteration:
     def _elastic_share(self) -> float:
         """Share of the elastic tangent in the next one where bodies flow.
 
-        None where they are slender: a sheet that is wiped over a shoulder takes 317 corrections for
-        268 with it, as it bends by flowing.
+        None where they are slender: a sheet that is wiped over a shoulder took 317 corrections for
+        268 with it, before contact was settled, as it bends by flowing.
         """
         if len(self.residuals) < 2 or not self._system.contact_term.compact:
             return 0.0

@@ -22,7 +22,7 @@ class SettledContact:
     Bodies answer by their last force and tangent, while laws and multipliers of contact are those
     of where a correction leads, until these forces are in balance [Josephy 1979]. A correction by
     the tangent alone keeps points in contact that a body leaves as it is let go: it is pulled along
-    as far as the other goes, and metal flows there that rests in what comes of it.
+    as far as the other goes, and metal flows there that does not flow in the end.
 
     Args:
         system: What is solved.

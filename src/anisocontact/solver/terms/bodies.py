@@ -72,7 +72,8 @@ class Bodies(Term):
         self._accepted: Floats | None = None
         #: Displacement and internal force at the last tangent.
         self._written: tuple[Vec, Floats] | None = None
-        self._linear = False
+        #: Displacement and internal force that forces are linear about, where they are.
+        self._about: tuple[Vec, Floats] | None = None
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
@@ -87,9 +88,8 @@ class Bodies(Term):
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
         """
-        if self._linear:
-            assert self._written is not None, "`add_tangent` comes first"
-            at, there = self._written
+        if self._about is not None:
+            at, there = self._about
             self._internal = there - self.bulk.times(self._owned(u) - at).array_r
         else:
             self._internal = -np.asarray(self.bulk.force(self._owned(u)).array_r)
@@ -98,12 +98,12 @@ class Bodies(Term):
 
     @contextmanager
     def linearised(self) -> Iterator[None]:
-        """Around evaluations in which forces follow from the last tangent, which is kept."""
-        self._linear = True
+        """Around evaluations in which forces follow from the last one and the last tangent."""
+        self._about = self._u.copy(), self._internal
         try:
             yield
         finally:
-            self._linear = False
+            self._about = None
 
     def accepted_internal_force(self, u: Floats) -> Floats:
         """Internal force in the accepted state `u`, as of `internal_force`; collective.
@@ -165,7 +165,7 @@ class Bodies(Term):
 
     @override
     def add_tangent(self, matrix: Mat) -> None:
-        again = self.again or self._linear
+        again = self.again or self._about is not None
         self.bulk.tangent(matrix, again=again, elastic_share=self.elastic_share)
         if not again:
             self._written = self._u.copy(), self._internal
