@@ -142,3 +142,20 @@ def test_no_state_is_restored_while_an_increment_is_solved(strategy):
         next(going)
     solver.restore(kept)
     assert len(list(solver.run())) == 5
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+def test_another_solver_goes_on_behind_an_open_run(strategy):
+    """Requirement: it has what one run of all steps had, whatever the open one had reduced.
+
+    Bodies that the open run condensed answered the new one: forces had the other sign.
+    """
+    expected = [_seen(accepted) for accepted in _solver(strategy).run()]
+    first = _solver("condensed")
+    going = first.run()
+    next(going)
+    then = Solver(first.problem, STEPS[1:], strategy=strategy)
+    seen = [_seen(accepted) for accepted in then.run()]
+    np.testing.assert_allclose(seen, expected[1:], rtol=1e-6, atol=1e-9)
+    with pytest.raises(InputError, match="problem: another solver has begun a step"):
+        next(going)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.mesh.elements import COUNTS
 
 #: Corners of the faces of cells in the order of Abaqus, to the left round seen from inside.
 FACES = {
@@ -39,7 +40,7 @@ EDGES: dict[str, list[tuple[int, int]]] = {
     "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)],
 }
 #: Corners of a cell.
-COUNT = {"tetrahedron": 4, "hexahedron": 8, "prism": 6, "pyramid": 5}
+COUNT = {cell: COUNTS[cell][0] for cell in FACES}
 #: Corners of the diagonals inside a hexahedron.
 _THROUGH = ((0, 6), (1, 7), (2, 4), (3, 5))
 

@@ -103,31 +103,9 @@ motion = {{ head = {{ y = -{touch} }} }}
 """
 
 
-def pad_on_block(
-    sides: tuple[str, str],
-    young: float,
-    nu: float,
-    friction: float,
-    *,
-    held: str,
-    touch: float,
-    load: float,
-    model: str = "linear-elastic",
-) -> str:
-    """The same pad, which a load presses on the block in a further increment.
-
-    Args:
-        sides: Slave and master.
-        young: Young's modulus.
-        nu: Poisson's ratio.
-        friction: Coefficient.
-        held: What holds the block, a table.
-        touch: Way of the head to the first touch.
-        load: That presses it then.
-        model: The material.
-    """
-    before = pad_touches_block(sides, young, nu, friction, held=held, touch=touch, model=model)
-    return f"""{before}
+def then_pressed(load: float) -> str:
+    """A further increment, in which a load presses that head and lets it move along the block."""
+    return f"""
 [[step]]
 name = "press"
 increments = 1

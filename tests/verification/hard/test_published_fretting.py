@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.verification.hard.case_texts import pad_on_block
+from tests.verification.hard.case_texts import pad_touches_block, then_pressed
 from tests.verification.hard.drawn import drawn, fine_at
 
 RADIUS, E, NU, MU = 100.0, 1000.0, 0.3, 0.4
@@ -96,7 +96,9 @@ def test_fretting(
 ) -> None:
     """Shear at every node, and what it would be without the stretch."""
     mesh(tmp_path / "bodies.msh")
-    text = pad_on_block(sides, E, NU, MU, held=HELD, touch=0.02, load=PRESSED, model=model)
+    text = pad_touches_block(sides, E, NU, MU, held=HELD, touch=0.02, model=model) + then_pressed(
+        PRESSED
+    )
     run = to_the_end(text + SHEARED_THEN, most=8000)
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 10

@@ -10,7 +10,7 @@ from slices whose stresses do not vary over the height, and where it slides all 
 
 Requirement: the mean, f = 0.1, a / h = 4, order 1 and 2, once all yields; no cut, and no node but
 those beside the middle sticks. Tolerance: measured 1.2 and 1.4 % less than the mean of slices, the
-last node that sticks at 0.2. Corrections: 11 and 14 where all comes to yield, then at most 5.
+last node that sticks at 0.2. Corrections: 11 and 14 where all comes to yield, then at most 6.
 """
 
 from __future__ import annotations

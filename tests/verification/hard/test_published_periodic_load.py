@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from tests.verification.hard.case_texts import pad_on_block
+from tests.verification.hard.case_texts import pad_touches_block, then_pressed
 from tests.verification.hard.test_published_fretting import HELD, MU, NU, RADIUS, REDUCED, E, mesh
 
 type Floats = npt.NDArray[np.float64]
@@ -152,7 +152,7 @@ def test_periodic_load(tmp_path: Path, to_the_end: Callable[..., Any]) -> None:
     a = np.sqrt(4.0 * MEAN * RADIUS / (np.pi * REDUCED))
     dissipated = []
     for sides in (("pad.nose", "block.top"), ("block.top", "pad.nose")):
-        text = pad_on_block(sides, E, NU, MU, held=HELD, touch=0.02, load=MEAN)
+        text = pad_touches_block(sides, E, NU, MU, held=HELD, touch=0.02) + then_pressed(MEAN)
         run = to_the_end(text + CYCLES, most=8000)
         assert not run.cuts
         assert max(part.iterations for part in run.accepted) <= 8

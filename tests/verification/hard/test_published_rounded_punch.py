@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from tests.verification.hard.case_texts import pad_on_block
+from tests.verification.hard.case_texts import pad_touches_block, then_pressed
 from tests.verification.hard.drawn import drawn, fine_at
 from tests.verification.line_contact.test_rounded_punch import exact, load
 
@@ -109,7 +109,7 @@ def test_sheared_in_part(
     """Pressure and shear at every node."""
     mesh(tmp_path / "bodies.msh", order, size)
     held = '{ "block.bottom" = { x = 0, y = 0 } }'
-    text = pad_on_block(sides, E, NU, MU, held=held, touch=0.002, load=FORCE)
+    text = pad_touches_block(sides, E, NU, MU, held=held, touch=0.002) + then_pressed(FORCE)
     run = to_the_end(text + SHEARED, most=16000)
     assert not run.cuts
     assert max(part.iterations for part in run.accepted) <= 8

@@ -18,7 +18,7 @@ from anisocontact.solver.stepping.overload import (
     Overload,
     held_at_most,
 )
-from anisocontact.solver.stepping.pressed_points import moves, pressed_points, slipping
+from anisocontact.solver.stepping.pressed_points import moves, pressed_all_over, slipping
 from anisocontact.solver.system.problem import Problem
 
 
@@ -40,8 +40,8 @@ def loosened(problem: Problem, fraction: float, now: float) -> list[Overload]:
 
 def _loosened(problem: Problem, body: Driven) -> str:
     """What is said of a body; empty where friction holds it easily, or the loads grow too far."""
-    points, touched, opened = pressed_points(problem, body)
-    if points is None or not touched or opened:
+    points = pressed_all_over(problem, body)
+    if points is None:
         return ""
     then = limit(points, body.motions, body.load)
     if then is None or then.held * TOO_MUCH < 1.0:

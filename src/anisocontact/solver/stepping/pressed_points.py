@@ -46,6 +46,12 @@ def pressed_points(problem: Problem, body: Driven) -> tuple[PressedPoints | None
     return kept, touched, opened
 
 
+def pressed_all_over(problem: Problem, body: Driven) -> PressedPoints | None:
+    """Where contact presses on a body, if all of its contacts do; see `pressed_points`."""
+    points, touched, opened = pressed_points(problem, body)
+    return points if touched and not opened else None
+
+
 def touching_points(problem: Problem, body: Driven) -> dict[Contact, PressedPoints]:
     """Where a body touches, pressed or not, with areas for forces, of each contact; on all ranks.
 

@@ -14,7 +14,7 @@ from anisocontact.solver.stepping.overload import (
     TURNS,
     Overload,
 )
-from anisocontact.solver.stepping.pressed_points import pressed_points, shown, slipping
+from anisocontact.solver.stepping.pressed_points import pressed_all_over, shown, slipping
 from anisocontact.solver.stepping.rest_after_sliding import SlidingMotion
 from anisocontact.solver.system.problem import Problem
 
@@ -36,8 +36,8 @@ def pulled_out(problem: Problem, fraction: float, now: float) -> list[Overload]:
 
 def _pulled_out(problem: Problem, body: Driven) -> str:
     """What is said of a body; empty where friction holds it, or something may stop it."""
-    points, touched, opened = pressed_points(problem, body)
-    if points is None or not touched or opened:
+    points = pressed_all_over(problem, body)
+    if points is None:
         return ""
     then = withdrawal(points, body.motions, body.load)
     # where normal forces alone drive it, or nothing rubs, it rests as soon as these are less

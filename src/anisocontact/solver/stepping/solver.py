@@ -167,6 +167,7 @@ class Solver(Uncopied, changing="place doubtful"):
         self._predictor.begin()
         if not (self.choice.strategy.reduces and self._kept):
             self.problem.reduction.recover()
+            self.problem.reduce_by(None)  # a run that was left open may have had it reduced
         with self._options.blamed(self.problem.together):
             yield from with_one_thread(self._all(note, warn))
 

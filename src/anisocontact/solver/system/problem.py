@@ -350,6 +350,8 @@ class Problem(
         """
         self.whole.take_pending({})
         self.reduction = self.whole if reduction is None else reduction
+        if reduction is None:
+            self.stabilisation.confine(None)
 
     def roll_back(self) -> None:
         """Return to the accepted state."""

@@ -307,7 +307,6 @@ class Condensed:
         self._bulk = self._system = None
         if ours:
             self._problem.reduce_by(None)
-            self._problem.stabilisation.confine(None)
 
     def _nodal(self) -> Floats:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
